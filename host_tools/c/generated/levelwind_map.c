@@ -1,0 +1,985 @@
+/*
+ * The Modbus map of the level wind controller: tables for its master.
+ * Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
+ * Do not edit.
+ */
+#include "levelwind_map.h"
+
+static const struct levelwind_value state_values[] = {
+	{0, "unindexed", "Position unknown. Give the command index"},
+	{1, "backing_off", "Indexing: moving off a limit switch that was active at the start"},
+	{2, "seeking", "Indexing: moving toward the indexing switch"},
+	{3, "index_reversal", "Indexing: switch found, turning round at the reversal point"},
+	{4, "span_check", "Indexing: sweeping back to check the other switch"},
+	{5, "parking", "Indexing: coming to rest at the parking place"},
+	{
+		6, "ready",
+		"Indexed and at rest. Follows the drum as soon as the mode is track and the drum is at rest",
+	},
+	{7, "tracking", "Following the drum"},
+	{8, "centring", "Moving to the centre"},
+	{9, "centred", "Held at the centre, the drum is not followed"},
+	{10, "jogging", "Moving by hand"},
+	{11, "off", "Stepper without current, position unknown"},
+	{12, "fault", "Stopped by a fault, see the register fault"},
+};
+
+static const struct levelwind_value mode_values[] = {
+	{0, "off", "Stepper without current. The index is lost"},
+	{1, "track", "Follow the drum once indexed"},
+	{2, "centre", "Hold the carriage at the centre, for pulling rope out"},
+};
+
+static const struct levelwind_value fault_values[] = {
+	{0, "none", "No fault"},
+	{
+		1, "index_no_switch",
+		"Indexing: no limit switch within the travel. Is the carriage free, is the stepper powered?",
+	},
+	{
+		2, "index_wrong_switch",
+		"Indexing: the opposite switch came first. Check the stepper direction and which switch is which",
+	},
+	{
+		3, "index_span",
+		"Indexing: the other switch is not where it was calibrated. Check both switches, then their calibrated positions",
+	},
+	{
+		4, "both_switches_active",
+		"Both limit switches are active at once. Check the switch wiring",
+	},
+	{
+		5, "back_off_no_release",
+		"The limit switch did not release although the carriage moved away. Stuck switch, or the stepper does not move",
+	},
+	{
+		6, "wiring_plus",
+		"Plus limit switch: contacts contradict each other or both stay open. Broken wire or short",
+	},
+	{
+		7, "wiring_minus",
+		"Minus limit switch: contacts contradict each other or both stay open. Broken wire or short",
+	},
+	{
+		8, "overtravel_plus",
+		"Plus overtravel switch: stepper disabled, only motion toward minus is allowed",
+	},
+	{
+		9, "overtravel_minus",
+		"Minus overtravel switch: stepper disabled, only motion toward plus is allowed",
+	},
+	{
+		10, "overspeed",
+		"The drum turned faster than overspeed_trip_edges_per_s, the stepper cannot follow",
+	},
+	{11, "los_limit", "More losses of synchronization in one launch than los_recoveries_max"},
+};
+
+static const struct levelwind_value command_values[] = {
+	{0, "none", "Nothing"},
+	{1, "index", "Find the position (homing). The drum must be at rest"},
+	{2, "stop", "Stop every motion now. Always accepted"},
+	{
+		3, "clear_fault",
+		"Acknowledge a fault whose cause is gone; indexing is needed afterwards",
+	},
+	{4, "apply", "Check the staged parameters as a whole and make them active"},
+	{5, "revert", "Drop the staged parameters: staged becomes active again"},
+	{6, "save", "Write the active parameters to non-volatile storage"},
+	{7, "factory_motion", "Stage the factory values of everything but the line settings"},
+	{8, "factory_line", "Stage the factory line settings"},
+	{9, "factory_all", "Stage all factory values"},
+};
+
+static const struct levelwind_value result_values[] = {
+	{0, "none", "No command since power-up"},
+	{1, "in_progress", "Accepted, still running"},
+	{2, "done", "Done"},
+	{3, "refused", "Refused, nothing changed; see command_reason"},
+	{4, "failed", "Started but did not succeed; see command_reason and fault"},
+};
+
+static const struct levelwind_value reason_values[] = {
+	{0, "none", "Not refused"},
+	{1, "unknown_function", "This function code is not supported"},
+	{2, "unknown_address", "No register or bit at this address"},
+	{3, "not_writable", "This register can only be read"},
+	{4, "half_of_pair", "A value of two registers must be written whole, in one request"},
+	{5, "out_of_range", "The value is outside the limits of this register"},
+	{6, "bad_count", "The count is zero or too large for this function"},
+	{7, "bad_length", "The request is shorter or longer than its function and count say"},
+	{8, "bad_coil_value", "A coil is written with 0x0000 or 0xFF00"},
+	{9, "several_commands", "One request can carry one command only"},
+	{
+		10, "busy_tracking",
+		"Refused while tracking: stop, or set the mode to centre with the drum at rest",
+	},
+	{11, "busy_moving", "Refused while the carriage moves by itself: wait or give stop"},
+	{12, "busy_saving", "Refused while parameters are being saved: try again"},
+	{13, "drum_moving", "The drum must be at rest for this"},
+	{14, "in_fault", "Stopped by a fault: remove the cause, then clear_fault or index"},
+	{15, "cause_present", "The cause of the fault is still there"},
+	{16, "mode_off", "Refused in mode off: set the mode to track or centre first"},
+	{17, "overtravel", "Only motion away from the active overtravel switch is allowed"},
+	{18, "storage_failed", "The non-volatile storage reported an error"},
+	{19, "stopped", "Ended by stop, mode off or a lost input before it was complete"},
+	{20, "faulted", "Ended by a fault, see the register fault"},
+	{21, "undefined_sub_function", "This sub-function or object is not supported"},
+	{
+		30, "slope_above_one_step",
+		"The pitch asks for more than one step per encoder edge: finer encoder edges, fewer microsteps or a smaller pitch",
+	},
+	{31, "slope_too_small", "The pitch asks for less than 1/65536 step per edge"},
+	{
+		32, "slope_unreachable",
+		"No pair (Ka, Nr) meets pitch and overshoot within slope_tolerance_ppm: allow more tolerance",
+	},
+	{
+		33, "reversals_crossed",
+		"reversal_minus must lie at least 2 microsteps below reversal_plus",
+	},
+	{34, "switch_plus_outside", "switch_plus must lie inside reversal_plus"},
+	{35, "switch_minus_outside", "switch_minus must lie inside reversal_minus"},
+	{
+		36, "switches_crossed",
+		"switch_minus must lie below switch_plus by more than twice tolerance plus hysteresis",
+	},
+	{
+		37, "overshoot_beyond_flange_plus",
+		"The overshoot past reversal_plus reaches beyond flange_plus",
+	},
+	{
+		38, "overshoot_beyond_flange_minus",
+		"The overshoot past reversal_minus reaches beyond flange_minus",
+	},
+	{
+		39, "park_outside",
+		"The parking place needs its last reversal (plus overshoot) inside the sweep",
+	},
+	{40, "centre_outside", "centre_position must lie inside the reversal points"},
+	{
+		41, "ramp_does_not_fit",
+		"Two ramps of one overshoot each must fit between the switches, less tolerance and hysteresis",
+	},
+	{
+		42, "position_overflow",
+		"A position is beyond 32767 microsteps: fewer microsteps per revolution or a shorter travel",
+	},
+	{43, "travel_too_short", "travel must be at least the distance between the flanges"},
+	{44, "overspeed_limits_crossed", "overspeed_warning must not be above overspeed_trip"},
+	{
+		45, "tolerance_beyond_flange",
+		"A calibrated switch position plus its tolerance must stay inside the flange",
+	},
+	{46, "too_few_edges", "The encoder ratio gives less than one edge per drum revolution"},
+	{
+		47, "debounce_too_long",
+		"At the index rate the carriage would pass the reversal point before the switch is debounced",
+	},
+};
+
+static const struct levelwind_value host_values[] = {
+	{1, "simulator", "POSIX simulator"},
+	{2, "native_sim", "Zephyr native_sim"},
+	{3, "qemu", "Zephyr in QEMU"},
+	{4, "hardware", "Zephyr on hardware"},
+};
+
+static const struct levelwind_value switch_contacts_values[] = {
+	{
+		0, "no_nc_pair",
+		"Change-over switch, both contacts wired: no debounce delay, broken wires are found",
+	},
+	{1, "single_no", "One normally open contact"},
+	{2, "single_nc", "One normally closed contact"},
+};
+
+static const struct levelwind_value side_values[] = {
+	{0, "plus", "Plus side"},
+	{1, "minus", "Minus side"},
+};
+
+static const struct levelwind_value park_at_values[] = {
+	{0, "flange", "At the far point of the reversal opposite to the indexing switch"},
+	{1, "position", "At park_position_um"},
+};
+
+static const struct levelwind_value line_format_values[] = {
+	{0, "8E1", "8 data bits, even parity, 1 stop bit (the standard's default)"},
+	{1, "8O1", "8 data bits, odd parity, 1 stop bit"},
+	{2, "8N1", "8 data bits, no parity, 1 stop bit"},
+	{3, "8N2", "8 data bits, no parity, 2 stop bits"},
+};
+
+static const struct levelwind_value flag_values[] = {
+	{0, "indexed", "The position is known"},
+	{1, "tracking", "The carriage follows the drum"},
+	{2, "launch_permit", "A launch may begin; see launch_inhibit if not"},
+	{3, "moving", "The carriage moves by itself (indexing, centring, jogging)"},
+	{4, "drum_at_rest", "The drum is slower than rest_edges_per_s for rest_time_ms"},
+	{5, "faulted", "Stopped by a fault"},
+	{
+		6, "los",
+		"Any loss of synchronization since the last indexing: the rope may be laid wrong",
+	},
+	{
+		7, "los1_plus",
+		"LOS type 1+: reversal at plus entered, its switch did not trigger on the way",
+	},
+	{
+		8, "los1_minus",
+		"LOS type 1-: reversal at minus entered, its switch did not trigger on the way",
+	},
+	{9, "los2_plus", "LOS type 2+: plus switch triggered outside its tolerance"},
+	{10, "los2_minus", "LOS type 2-: minus switch triggered outside its tolerance"},
+	{11, "switch_plus", "Plus limit switch actuated (debounced)"},
+	{12, "switch_minus", "Minus limit switch actuated (debounced)"},
+	{13, "wiring_plus", "Plus limit switch wiring fault"},
+	{14, "wiring_minus", "Minus limit switch wiring fault"},
+	{15, "overtravel_plus", "Plus overtravel switch actuated"},
+	{16, "overtravel_minus", "Minus overtravel switch actuated"},
+	{17, "overspeed_warning", "The drum is faster than overspeed_warning_edges_per_s"},
+	{
+		18, "overspeed_trip",
+		"The drum was faster than overspeed_trip_edges_per_s (sticky until clear_fault)",
+	},
+	{19, "master_lost", "No valid request for master_timeout_ms"},
+	{20, "staged", "Staged parameters differ from the active ones: APPLY or REVERT"},
+	{21, "dirty", "Active parameters differ from the stored ones: SAVE to keep them"},
+	{
+		22, "defaults_loaded",
+		"No usable stored set was found at power-up: factory values are active",
+	},
+	{23, "trim_pending", "A trim waits for the carriage to be in the sweep"},
+	{24, "correction_pending", "A re-index correction waits for the end of the reversal"},
+	{25, "stepper_enabled", "The stepper has current"},
+	{
+		26, "restart_needed",
+		"The active line settings differ from those in use: SAVE and restart",
+	},
+};
+
+static const struct levelwind_value launch_inhibit_values[] = {
+	{0, "not_tracking", "The state is not tracking"},
+	{1, "los", "Synchronization was lost: index again"},
+	{2, "fault", "A fault stands"},
+	{3, "wiring", "A limit switch has a wiring fault"},
+	{4, "overtravel", "An overtravel switch is actuated"},
+	{5, "overspeed", "The drum tripped the overspeed limit"},
+	{6, "master_lost", "The Modbus master is silent"},
+	{7, "correction", "A re-index correction is pending"},
+};
+
+static const int32_t allowed_encoder_edges_per_pulse[] = {1, 2, 4};
+static const int32_t allowed_baud_rate[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
+
+const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
+	{
+		.name = "command", .unit = "",
+		.text = "Writing a code runs the command; reads the last one",
+		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_U16, .address = 0,
+		.words = 1, .min = 0, .max = 9, .default_value = 0, .values = command_values,
+		.value_count = 10,
+	},
+	{
+		.name = "mode", .unit = "",
+		.text = "Requested mode, taken over when the drum is at rest (off: at once)",
+		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_U16, .address = 1,
+		.words = 1, .min = 0, .max = 2, .default_value = 1, .values = mode_values,
+		.value_count = 3,
+	},
+	{
+		.name = "jog", .unit = "",
+		.text = "Held jog: -1, 0 or +1; write again within jog_hold_ms or it stops",
+		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_I16, .address = 2,
+		.words = 1, .min = -1, .max = 1, .default_value = 0,
+	},
+	{
+		.name = "trim_plus_um", .unit = "um",
+		.text = "Live shift of reversal_plus, applied in the sweep only",
+		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_I16, .address = 3,
+		.words = 1, .min = -20000, .max = 20000, .default_value = 0,
+	},
+	{
+		.name = "trim_minus_um", .unit = "um",
+		.text = "Live shift of reversal_minus, applied in the sweep only",
+		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_I16, .address = 4,
+		.words = 1, .min = -20000, .max = 20000, .default_value = 0,
+	},
+	{
+		.name = "encoder_pulses_per_rev", .unit = "pulses",
+		.text = "Encoder pulses per revolution of its shaft",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 100,
+		.words = 1, .min = 1, .max = 10000, .default_value = 360,
+	},
+	{
+		.name = "encoder_edges_per_pulse", .unit = "edges", .text = "Edges used per pulse",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 101,
+		.words = 1, .min = 1, .max = 4, .default_value = 2,
+		.allowed = allowed_encoder_edges_per_pulse, .allowed_count = 3,
+	},
+	{
+		.name = "encoder_ratio_numerator", .unit = "",
+		.text = "Encoder revolutions per drum revolution, numerator",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 102,
+		.words = 1, .min = 1, .max = 1000, .default_value = 4,
+	},
+	{
+		.name = "encoder_ratio_denominator", .unit = "",
+		.text = "Encoder revolutions per drum revolution, denominator",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 103,
+		.words = 1, .min = 1, .max = 1000, .default_value = 1,
+	},
+	{
+		.name = "encoder_invert_a", .unit = "", .text = "1 inverts encoder channel A",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 104,
+		.words = 1, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.name = "encoder_invert_b", .unit = "", .text = "1 inverts encoder channel B",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 105,
+		.words = 1, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.name = "drum_direction_invert", .unit = "",
+		.text = "1 swaps the sign of drum motion; hauling rope in must count positive",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 106,
+		.words = 1, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.name = "rope_per_drum_rev_um", .unit = "um",
+		.text = "Rope hauled in per drum revolution, for the odometer",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 107,
+		.words = 2, .min = 1000, .max = 20000000, .default_value = 2400000,
+	},
+	{
+		.name = "screw_lead_um", .unit = "um",
+		.text = "Carriage travel per screw revolution", .block = LEVELWIND_BLOCK_PARAMETERS,
+		.type = LEVELWIND_TYPE_U32, .address = 110, .words = 2, .min = 500, .max = 100000,
+		.default_value = 20000,
+	},
+	{
+		.name = "microsteps_per_rev", .unit = "usteps",
+		.text = "Microsteps per stepper revolution, as set at the stepper driver",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 112,
+		.words = 1, .min = 200, .max = 51200, .default_value = 2000,
+	},
+	{
+		.name = "carriage_direction_invert", .unit = "",
+		.text = "1 inverts the stepper's direction output",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 113,
+		.words = 1, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.name = "pitch_um", .unit = "um", .text = "Carriage travel per drum revolution",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 114,
+		.words = 2, .min = 10, .max = 100000, .default_value = 12000,
+	},
+	{
+		.name = "overshoot_um", .unit = "um",
+		.text = "How far a reversal runs past the reversal point",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 116,
+		.words = 2, .min = 1, .max = 50000, .default_value = 2500,
+	},
+	{
+		.name = "slope_tolerance_ppm", .unit = "ppm",
+		.text = "How far the pitch may be off to meet the overshoot",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 118,
+		.words = 1, .min = 1, .max = 50000, .default_value = 500,
+	},
+	{
+		.name = "reversal_plus_um", .unit = "um",
+		.text = "Where the reversal at the plus side begins",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I32, .address = 120,
+		.words = 2, .min = -500000, .max = 500000, .default_value = 80000,
+	},
+	{
+		.name = "reversal_minus_um", .unit = "um",
+		.text = "Where the reversal at the minus side begins",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I32, .address = 122,
+		.words = 2, .min = -500000, .max = 500000, .default_value = -80000,
+	},
+	{
+		.name = "flange_plus_um", .unit = "um",
+		.text = "Farthest place on the plus side that the carriage may be commanded to",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I32, .address = 124,
+		.words = 2, .min = -500000, .max = 500000, .default_value = 82500,
+	},
+	{
+		.name = "flange_minus_um", .unit = "um",
+		.text = "Farthest place on the minus side that the carriage may be commanded to",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I32, .address = 126,
+		.words = 2, .min = -500000, .max = 500000, .default_value = -82500,
+	},
+	{
+		.name = "switch_plus_um", .unit = "um",
+		.text = "Calibrated trigger position of the plus limit switch",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I32, .address = 128,
+		.words = 2, .min = -500000, .max = 500000, .default_value = 78400,
+	},
+	{
+		.name = "switch_minus_um", .unit = "um",
+		.text = "Calibrated trigger position of the minus limit switch",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I32, .address = 130,
+		.words = 2, .min = -500000, .max = 500000, .default_value = -78400,
+	},
+	{
+		.name = "switch_tolerance_um", .unit = "um",
+		.text = "A trigger further than this from its calibrated position is a LOS of type 2",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 132,
+		.words = 1, .min = 10, .max = 20000, .default_value = 1000,
+	},
+	{
+		.name = "switch_hysteresis_um", .unit = "um",
+		.text = "Within this distance inward of its trigger point a switch has surely released",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 133,
+		.words = 1, .min = 10, .max = 20000, .default_value = 1500,
+	},
+	{
+		.name = "switch_contacts", .unit = "", .text = "How the limit switches are wired",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 134,
+		.words = 1, .min = 0, .max = 2, .default_value = 0,
+		.values = switch_contacts_values, .value_count = 3,
+	},
+	{
+		.name = "switch_transit_ms", .unit = "ms",
+		.text = "Both contacts open longer than this is a wiring fault",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 135,
+		.words = 1, .min = 1, .max = 90, .default_value = 20,
+	},
+	{
+		.name = "switch_debounce_ms", .unit = "ms",
+		.text = "Debounce time of a single contact", .block = LEVELWIND_BLOCK_PARAMETERS,
+		.type = LEVELWIND_TYPE_U16, .address = 136, .words = 1, .min = 1, .max = 100,
+		.default_value = 5,
+	},
+	{
+		.name = "travel_um", .unit = "um",
+		.text = "Carriage travel between the mechanical end stops",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 137,
+		.words = 2, .min = 1000, .max = 600000, .default_value = 180000,
+	},
+	{
+		.name = "index_switch", .unit = "",
+		.text = "Which limit switch is the indexing switch",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 140,
+		.words = 1, .min = 0, .max = 1, .default_value = 0, .values = side_values,
+		.value_count = 2,
+	},
+	{
+		.name = "index_rate_edges_per_s", .unit = "edges/s",
+		.text = "Rate of the simulated edges for indexing and centring",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 141,
+		.words = 1, .min = 100, .max = 50000, .default_value = 10000,
+	},
+	{
+		.name = "park_at", .unit = "", .text = "Where indexing ends",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 142,
+		.words = 1, .min = 0, .max = 1, .default_value = 0, .values = park_at_values,
+		.value_count = 2,
+	},
+	{
+		.name = "park_position_um", .unit = "um",
+		.text = "Parking place if park_at is position", .block = LEVELWIND_BLOCK_PARAMETERS,
+		.type = LEVELWIND_TYPE_I32, .address = 143, .words = 2, .min = -500000,
+		.max = 500000, .default_value = 0,
+	},
+	{
+		.name = "span_tolerance_um", .unit = "um",
+		.text = "Indexing: how far the other switch may be from its calibrated position",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 145,
+		.words = 1, .min = 10, .max = 20000, .default_value = 1000,
+	},
+	{
+		.name = "handover_direction", .unit = "",
+		.text = "Carriage direction on hand-over from a parking position or the centre, drum hauling in",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 146,
+		.words = 1, .min = 0, .max = 1, .default_value = 0, .values = side_values,
+		.value_count = 2,
+	},
+	{
+		.name = "rest_edges_per_s", .unit = "edges/s",
+		.text = "The drum counts as at rest below this rate",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 147,
+		.words = 1, .min = 1, .max = 5000, .default_value = 50,
+	},
+	{
+		.name = "rest_time_ms", .unit = "ms",
+		.text = "The drum counts as at rest after this time below rest_edges_per_s",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 148,
+		.words = 1, .min = 10, .max = 10000, .default_value = 200,
+	},
+	{
+		.name = "centre_position_um", .unit = "um",
+		.text = "Where mode centre holds the carriage", .block = LEVELWIND_BLOCK_PARAMETERS,
+		.type = LEVELWIND_TYPE_I32, .address = 149, .words = 2, .min = -500000,
+		.max = 500000, .default_value = 0,
+	},
+	{
+		.name = "jog_rate_edges_per_s", .unit = "edges/s",
+		.text = "Rate of the simulated edges for jogging",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 151,
+		.words = 1, .min = 100, .max = 50000, .default_value = 5000,
+	},
+	{
+		.name = "jog_hold_ms", .unit = "ms",
+		.text = "A jog stops when it is not written again within this time",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 152,
+		.words = 1, .min = 50, .max = 5000, .default_value = 500,
+	},
+	{
+		.name = "los_recoveries_max", .unit = "",
+		.text = "Stop after more LOS recoveries than this in one launch (0: never stop)",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 160,
+		.words = 1, .min = 0, .max = 1000, .default_value = 3,
+	},
+	{
+		.name = "overspeed_warning_edges_per_s", .unit = "edges/s",
+		.text = "Drum speed that sets the flag overspeed_warning",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 161,
+		.words = 2, .min = 100, .max = 1000000, .default_value = 52000,
+	},
+	{
+		.name = "overspeed_trip_edges_per_s", .unit = "edges/s",
+		.text = "Drum speed that stops the controller", .block = LEVELWIND_BLOCK_PARAMETERS,
+		.type = LEVELWIND_TYPE_U32, .address = 163, .words = 2, .min = 100, .max = 1000000,
+		.default_value = 60000,
+	},
+	{
+		.name = "master_timeout_ms", .unit = "ms",
+		.text = "Without a valid request for this long the launch permit drops (0: not watched)",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 165,
+		.words = 1, .min = 0, .max = 60000, .default_value = 0,
+	},
+	{
+		.name = "dwell_plus_millirev", .unit = "1/1000 drum rev",
+		.text = "Dwell at the far point of the plus reversal",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 166,
+		.words = 1, .min = 0, .max = 10000, .default_value = 0,
+	},
+	{
+		.name = "dwell_minus_millirev", .unit = "1/1000 drum rev",
+		.text = "Dwell at the far point of the minus reversal",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 167,
+		.words = 1, .min = 0, .max = 10000, .default_value = 0,
+	},
+	{
+		.name = "expert_mode", .unit = "",
+		.text = "1: the four raw_ values replace pitch, overshoot and reversal points",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 170,
+		.words = 1, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.name = "raw_ka", .unit = "usteps/65536",
+		.text = "Slope change per edge in a reversal", .block = LEVELWIND_BLOCK_PARAMETERS,
+		.type = LEVELWIND_TYPE_U16, .address = 171, .words = 1, .min = 1, .max = 65535,
+		.default_value = 23,
+	},
+	{
+		.name = "raw_nr", .unit = "edges",
+		.text = "Edges from sweep slope to zero slope; Ks = Ka * Nr",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 172,
+		.words = 1, .min = 1, .max = 65535, .default_value = 1187,
+	},
+	{
+		.name = "raw_reversal_plus_usteps", .unit = "usteps", .text = "L+",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I16, .address = 173,
+		.words = 1, .min = -32000, .max = 32000, .default_value = 8000,
+	},
+	{
+		.name = "raw_reversal_minus_usteps", .unit = "usteps", .text = "L-",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I16, .address = 174,
+		.words = 1, .min = -32000, .max = 32000, .default_value = -8000,
+	},
+	{
+		.name = "unit_id", .unit = "",
+		.text = "Modbus unit id, effective after APPLY, SAVE and restart",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 180,
+		.words = 1, .min = 1, .max = 247, .default_value = 1,
+	},
+	{
+		.name = "baud_rate", .unit = "baud",
+		.text = "Line speed, effective after APPLY, SAVE and restart",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 181,
+		.words = 2, .min = 1200, .max = 115200, .default_value = 19200,
+		.allowed = allowed_baud_rate, .allowed_count = 8,
+	},
+	{
+		.name = "line_format", .unit = "",
+		.text = "Data bits, parity, stop bits, effective after APPLY, SAVE and restart",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 183,
+		.words = 1, .min = 0, .max = 3, .default_value = 0, .values = line_format_values,
+		.value_count = 4,
+	},
+	{
+		.name = "self_test", .unit = "",
+		.text = "Always 0x12345678: the master's word order is right when it reads so",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 0,
+		.words = 2, .offset = offsetof(struct levelwind_status, self_test),
+	},
+	{
+		.name = "map_version", .unit = "", .text = "Version of this map",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 2,
+		.words = 1, .offset = offsetof(struct levelwind_status, map_version),
+	},
+	{
+		.name = "version_major", .unit = "", .text = "Firmware version, major",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 3,
+		.words = 1, .offset = offsetof(struct levelwind_status, version_major),
+	},
+	{
+		.name = "version_minor", .unit = "", .text = "Firmware version, minor",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 4,
+		.words = 1, .offset = offsetof(struct levelwind_status, version_minor),
+	},
+	{
+		.name = "version_patch", .unit = "", .text = "Firmware version, patch",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 5,
+		.words = 1, .offset = offsetof(struct levelwind_status, version_patch),
+	},
+	{
+		.name = "host", .unit = "", .text = "What runs the core",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 6,
+		.words = 1, .offset = offsetof(struct levelwind_status, host),
+		.values = host_values, .value_count = 4,
+	},
+	{
+		.name = "state", .unit = "", .text = "What the controller is doing",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 100,
+		.words = 1, .offset = offsetof(struct levelwind_status, state),
+		.values = state_values, .value_count = 13,
+	},
+	{
+		.name = "active_mode", .unit = "",
+		.text = "Mode in force (the requested one waits for the drum to rest)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 101,
+		.words = 1, .offset = offsetof(struct levelwind_status, active_mode),
+		.values = mode_values, .value_count = 3,
+	},
+	{
+		.name = "fault", .unit = "", .text = "Why the controller stopped",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 102,
+		.words = 1, .offset = offsetof(struct levelwind_status, fault),
+		.values = fault_values, .value_count = 12,
+	},
+	{
+		.name = "flags", .unit = "",
+		.text = "All discrete inputs in one pair, bit number = discrete input address",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 103,
+		.words = 2, .offset = offsetof(struct levelwind_status, flags),
+		.values = flag_values, .value_count = 27,
+	},
+	{
+		.name = "launch_inhibit", .unit = "",
+		.text = "Why a launch is not permitted; 0 means launch permit",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 105,
+		.words = 1, .offset = offsetof(struct levelwind_status, launch_inhibit),
+		.values = launch_inhibit_values, .value_count = 8,
+	},
+	{
+		.name = "position_um", .unit = "um", .text = "Carriage position",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 106,
+		.words = 2, .offset = offsetof(struct levelwind_status, position_um),
+	},
+	{
+		.name = "position_usteps", .unit = "usteps",
+		.text = "Carriage position, whole microsteps", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I16, .address = 108, .words = 1,
+		.offset = offsetof(struct levelwind_status, position_usteps),
+	},
+	{
+		.name = "m", .unit = "usteps/65536", .text = "Carriage position, Q16.16",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 109,
+		.words = 2, .offset = offsetof(struct levelwind_status, m),
+	},
+	{
+		.name = "u", .unit = "usteps/65536",
+		.text = "Slope: microsteps that one forward edge moves the carriage, Q16.16",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 111,
+		.words = 2, .offset = offsetof(struct levelwind_status, u),
+	},
+	{
+		.name = "drum_speed_edges_per_s", .unit = "edges/s",
+		.text = "Drum speed, positive hauls rope in", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I32, .address = 113, .words = 2,
+		.offset = offsetof(struct levelwind_status, drum_speed_edges_per_s),
+	},
+	{
+		.name = "rope_speed_mm_per_s", .unit = "mm/s",
+		.text = "Rope speed, positive hauls in", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I32, .address = 115, .words = 2,
+		.offset = offsetof(struct levelwind_status, rope_speed_mm_per_s),
+	},
+	{
+		.name = "rope_mm", .unit = "mm",
+		.text = "Rope hauled in (positive) or paid out since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 117,
+		.words = 2, .offset = offsetof(struct levelwind_status, rope_mm),
+	},
+	{
+		.name = "net_edges", .unit = "edges",
+		.text = "Odometer: net drum edges since power-up", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I64, .address = 119, .words = 4,
+		.offset = offsetof(struct levelwind_status, net_edges),
+	},
+	{
+		.name = "pattern_edges", .unit = "edges",
+		.text = "Net edges followed since the last hand-over",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I64, .address = 123,
+		.words = 4, .offset = offsetof(struct levelwind_status, pattern_edges),
+	},
+	{
+		.name = "uptime_ms", .unit = "ms", .text = "Time since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 127,
+		.words = 2, .offset = offsetof(struct levelwind_status, uptime_ms),
+	},
+	{
+		.name = "los_recoveries", .unit = "",
+		.text = "Re-indexings after a LOS in this launch", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_U16, .address = 129, .words = 1,
+		.offset = offsetof(struct levelwind_status, los_recoveries),
+	},
+	{
+		.name = "span_error_um", .unit = "um",
+		.text = "Last indexing: found minus calibrated position of the other switch",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 130,
+		.words = 2, .offset = offsetof(struct levelwind_status, span_error_um),
+	},
+	{
+		.name = "los1_plus_count", .unit = "", .text = "LOS type 1+ since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 200,
+		.words = 1, .offset = offsetof(struct levelwind_status, los1_plus_count),
+	},
+	{
+		.name = "los1_plus_position_um", .unit = "um",
+		.text = "Position of the first since the last indexing",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 201,
+		.words = 2, .offset = offsetof(struct levelwind_status, los1_plus_position_um),
+	},
+	{
+		.name = "los1_plus_time_ms", .unit = "ms", .text = "Its time since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 203,
+		.words = 2, .offset = offsetof(struct levelwind_status, los1_plus_time_ms),
+	},
+	{
+		.name = "los1_minus_count", .unit = "", .text = "LOS type 1- since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 210,
+		.words = 1, .offset = offsetof(struct levelwind_status, los1_minus_count),
+	},
+	{
+		.name = "los1_minus_position_um", .unit = "um",
+		.text = "Position of the first since the last indexing",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 211,
+		.words = 2, .offset = offsetof(struct levelwind_status, los1_minus_position_um),
+	},
+	{
+		.name = "los1_minus_time_ms", .unit = "ms", .text = "Its time since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 213,
+		.words = 2, .offset = offsetof(struct levelwind_status, los1_minus_time_ms),
+	},
+	{
+		.name = "los2_plus_count", .unit = "", .text = "LOS type 2+ since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 220,
+		.words = 1, .offset = offsetof(struct levelwind_status, los2_plus_count),
+	},
+	{
+		.name = "los2_plus_position_um", .unit = "um",
+		.text = "Position of the first since the last indexing",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 221,
+		.words = 2, .offset = offsetof(struct levelwind_status, los2_plus_position_um),
+	},
+	{
+		.name = "los2_plus_time_ms", .unit = "ms", .text = "Its time since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 223,
+		.words = 2, .offset = offsetof(struct levelwind_status, los2_plus_time_ms),
+	},
+	{
+		.name = "los2_minus_count", .unit = "", .text = "LOS type 2- since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 230,
+		.words = 1, .offset = offsetof(struct levelwind_status, los2_minus_count),
+	},
+	{
+		.name = "los2_minus_position_um", .unit = "um",
+		.text = "Position of the first since the last indexing",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 231,
+		.words = 2, .offset = offsetof(struct levelwind_status, los2_minus_position_um),
+	},
+	{
+		.name = "los2_minus_time_ms", .unit = "ms", .text = "Its time since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 233,
+		.words = 2, .offset = offsetof(struct levelwind_status, los2_minus_time_ms),
+	},
+	{
+		.name = "illegal_transitions", .unit = "",
+		.text = "Encoder transitions of both channels at once since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 300,
+		.words = 2, .offset = offsetof(struct levelwind_status, illegal_transitions),
+	},
+	{
+		.name = "switch_plus_triggers", .unit = "",
+		.text = "Trigger events of the plus limit switch", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_U32, .address = 302, .words = 2,
+		.offset = offsetof(struct levelwind_status, switch_plus_triggers),
+	},
+	{
+		.name = "switch_minus_triggers", .unit = "",
+		.text = "Trigger events of the minus limit switch", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_U32, .address = 304, .words = 2,
+		.offset = offsetof(struct levelwind_status, switch_minus_triggers),
+	},
+	{
+		.name = "steps", .unit = "usteps", .text = "Step pulses given since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 306,
+		.words = 2, .offset = offsetof(struct levelwind_status, steps),
+	},
+	{
+		.name = "requests", .unit = "", .text = "Modbus requests answered or executed",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 308,
+		.words = 2, .offset = offsetof(struct levelwind_status, requests),
+	},
+	{
+		.name = "crc_errors", .unit = "", .text = "Modbus frames with a wrong CRC",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 310,
+		.words = 2, .offset = offsetof(struct levelwind_status, crc_errors),
+	},
+	{
+		.name = "exceptions", .unit = "", .text = "Modbus exceptions answered",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 312,
+		.words = 2, .offset = offsetof(struct levelwind_status, exceptions),
+	},
+	{
+		.name = "command_sequence", .unit = "",
+		.text = "Counts every command, also refused ones", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_U16, .address = 400, .words = 1,
+		.offset = offsetof(struct levelwind_status, command_sequence),
+	},
+	{
+		.name = "command_code", .unit = "", .text = "The last command",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 401,
+		.words = 1, .offset = offsetof(struct levelwind_status, command_code),
+		.values = command_values, .value_count = 10,
+	},
+	{
+		.name = "command_result", .unit = "", .text = "How it ended",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 402,
+		.words = 1, .offset = offsetof(struct levelwind_status, command_result),
+		.values = result_values, .value_count = 5,
+	},
+	{
+		.name = "command_reason", .unit = "", .text = "Why it was refused or failed",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 403,
+		.words = 1, .offset = offsetof(struct levelwind_status, command_reason),
+		.values = reason_values, .value_count = 40,
+	},
+	{
+		.name = "command_address", .unit = "",
+		.text = "Offending holding register, 65535 if none",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 404,
+		.words = 1, .offset = offsetof(struct levelwind_status, command_address),
+	},
+	{
+		.name = "command_value", .unit = "", .text = "Offending value",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 405,
+		.words = 2, .offset = offsetof(struct levelwind_status, command_value),
+	},
+	{
+		.name = "command_limit", .unit = "", .text = "The limit that it broke",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 407,
+		.words = 2, .offset = offsetof(struct levelwind_status, command_limit),
+	},
+	{
+		.name = "last_error_reason", .unit = "",
+		.text = "Why the last refused request was refused", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_U16, .address = 410, .words = 1,
+		.offset = offsetof(struct levelwind_status, last_error_reason),
+		.values = reason_values, .value_count = 40,
+	},
+	{
+		.name = "last_error_function", .unit = "", .text = "Its function code",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 411,
+		.words = 1, .offset = offsetof(struct levelwind_status, last_error_function),
+	},
+	{
+		.name = "last_error_exception", .unit = "", .text = "The exception answered",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 412,
+		.words = 1, .offset = offsetof(struct levelwind_status, last_error_exception),
+	},
+	{
+		.name = "last_error_address", .unit = "", .text = "The offending address",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 413,
+		.words = 1, .offset = offsetof(struct levelwind_status, last_error_address),
+	},
+	{
+		.name = "last_error_value", .unit = "", .text = "The offending value",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 414,
+		.words = 2, .offset = offsetof(struct levelwind_status, last_error_value),
+	},
+	{
+		.name = "last_error_limit", .unit = "", .text = "The limit that it broke",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 416,
+		.words = 2, .offset = offsetof(struct levelwind_status, last_error_limit),
+	},
+	{
+		.name = "ka", .unit = "usteps/65536",
+		.text = "Slope change per edge in a reversal, in force",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 500,
+		.words = 2, .offset = offsetof(struct levelwind_status, ka),
+	},
+	{
+		.name = "nr", .unit = "edges",
+		.text = "Edges from sweep slope to zero slope, in force",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 502,
+		.words = 2, .offset = offsetof(struct levelwind_status, nr),
+	},
+	{
+		.name = "ks", .unit = "usteps/65536",
+		.text = "Sweep slope per edge, in force: Ks = Ka * Nr",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 504,
+		.words = 2, .offset = offsetof(struct levelwind_status, ks),
+	},
+	{
+		.name = "reversal_plus_usteps", .unit = "usteps",
+		.text = "L+ in force, trim included", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I16, .address = 506, .words = 1,
+		.offset = offsetof(struct levelwind_status, reversal_plus_usteps),
+	},
+	{
+		.name = "reversal_minus_usteps", .unit = "usteps",
+		.text = "L- in force, trim included", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I16, .address = 507, .words = 1,
+		.offset = offsetof(struct levelwind_status, reversal_minus_usteps),
+	},
+	{
+		.name = "overshoot_actual_um", .unit = "um",
+		.text = "Overshoot in force: Ks * (Nr - 1) / 2", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I32, .address = 508, .words = 2,
+		.offset = offsetof(struct levelwind_status, overshoot_actual_um),
+	},
+	{
+		.name = "slope_error_ppm", .unit = "ppm", .text = "Residual error of the pitch",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 510,
+		.words = 2, .offset = offsetof(struct levelwind_status, slope_error_ppm),
+	},
+	{
+		.name = "overshoot_error_um", .unit = "um",
+		.text = "Residual error of the overshoot", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I32, .address = 512, .words = 2,
+		.offset = offsetof(struct levelwind_status, overshoot_error_um),
+	},
+	{
+		.name = "edges_per_1000_drum_revs", .unit = "edges",
+		.text = "Used encoder edges per 1000 drum revolutions, rounded",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 514,
+		.words = 2, .offset = offsetof(struct levelwind_status, edges_per_1000_drum_revs),
+	},
+	{
+		.name = "dwell_plus_edges", .unit = "edges", .text = "Dwell at the plus side",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 516,
+		.words = 2, .offset = offsetof(struct levelwind_status, dwell_plus_edges),
+	},
+	{
+		.name = "dwell_minus_edges", .unit = "edges", .text = "Dwell at the minus side",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 518,
+		.words = 2, .offset = offsetof(struct levelwind_status, dwell_minus_edges),
+	},
+};

@@ -1,0 +1,689 @@
+/*
+ * The Modbus map of the level wind controller, for its master.
+ * Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
+ * Do not edit.
+ */
+#ifndef LEVELWIND_MAP_H
+#define LEVELWIND_MAP_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* What this map expects in the registers map_version and self_test. */
+#define LEVELWIND_MAP_VERSION 1
+#define LEVELWIND_SELF_TEST   0x12345678u
+
+/** What the controller is doing */
+enum levelwind_state {
+	/** Position unknown. Give the command index */
+	LEVELWIND_STATE_UNINDEXED = 0,
+	/** Indexing: moving off a limit switch that was active at the start */
+	LEVELWIND_STATE_BACKING_OFF = 1,
+	/** Indexing: moving toward the indexing switch */
+	LEVELWIND_STATE_SEEKING = 2,
+	/** Indexing: switch found, turning round at the reversal point */
+	LEVELWIND_STATE_INDEX_REVERSAL = 3,
+	/** Indexing: sweeping back to check the other switch */
+	LEVELWIND_STATE_SPAN_CHECK = 4,
+	/** Indexing: coming to rest at the parking place */
+	LEVELWIND_STATE_PARKING = 5,
+	/**
+	 * Indexed and at rest. Follows the drum as soon as the mode is track and the drum is at
+	 * rest
+	 */
+	LEVELWIND_STATE_READY = 6,
+	/** Following the drum */
+	LEVELWIND_STATE_TRACKING = 7,
+	/** Moving to the centre */
+	LEVELWIND_STATE_CENTRING = 8,
+	/** Held at the centre, the drum is not followed */
+	LEVELWIND_STATE_CENTRED = 9,
+	/** Moving by hand */
+	LEVELWIND_STATE_JOGGING = 10,
+	/** Stepper without current, position unknown */
+	LEVELWIND_STATE_OFF = 11,
+	/** Stopped by a fault, see the register fault */
+	LEVELWIND_STATE_FAULT = 12,
+};
+
+/** What the carriage shall do */
+enum levelwind_mode {
+	/** Stepper without current. The index is lost */
+	LEVELWIND_MODE_OFF = 0,
+	/** Follow the drum once indexed */
+	LEVELWIND_MODE_TRACK = 1,
+	/** Hold the carriage at the centre, for pulling rope out */
+	LEVELWIND_MODE_CENTRE = 2,
+};
+
+/** Why the controller stopped */
+enum levelwind_fault {
+	/** No fault */
+	LEVELWIND_FAULT_NONE = 0,
+	/**
+	 * Indexing: no limit switch within the travel. Is the carriage free, is the stepper
+	 * powered?
+	 */
+	LEVELWIND_FAULT_INDEX_NO_SWITCH = 1,
+	/**
+	 * Indexing: the opposite switch came first. Check the stepper direction and which switch is
+	 * which
+	 */
+	LEVELWIND_FAULT_INDEX_WRONG_SWITCH = 2,
+	/**
+	 * Indexing: the other switch is not where it was calibrated. Check both switches, then
+	 * their calibrated positions
+	 */
+	LEVELWIND_FAULT_INDEX_SPAN = 3,
+	/** Both limit switches are active at once. Check the switch wiring */
+	LEVELWIND_FAULT_BOTH_SWITCHES_ACTIVE = 4,
+	/**
+	 * The limit switch did not release although the carriage moved away. Stuck switch, or the
+	 * stepper does not move
+	 */
+	LEVELWIND_FAULT_BACK_OFF_NO_RELEASE = 5,
+	/**
+	 * Plus limit switch: contacts contradict each other or both stay open. Broken wire or short
+	 */
+	LEVELWIND_FAULT_WIRING_PLUS = 6,
+	/**
+	 * Minus limit switch: contacts contradict each other or both stay open. Broken wire or
+	 * short
+	 */
+	LEVELWIND_FAULT_WIRING_MINUS = 7,
+	/** Plus overtravel switch: stepper disabled, only motion toward minus is allowed */
+	LEVELWIND_FAULT_OVERTRAVEL_PLUS = 8,
+	/** Minus overtravel switch: stepper disabled, only motion toward plus is allowed */
+	LEVELWIND_FAULT_OVERTRAVEL_MINUS = 9,
+	/** The drum turned faster than overspeed_trip_edges_per_s, the stepper cannot follow */
+	LEVELWIND_FAULT_OVERSPEED = 10,
+	/** More losses of synchronization in one launch than los_recoveries_max */
+	LEVELWIND_FAULT_LOS_LIMIT = 11,
+};
+
+/** Momentary commands, by the register command or by the coil of the same name */
+enum levelwind_command {
+	/** Nothing */
+	LEVELWIND_COMMAND_NONE = 0,
+	/** Find the position (homing). The drum must be at rest */
+	LEVELWIND_COMMAND_INDEX = 1,
+	/** Stop every motion now. Always accepted */
+	LEVELWIND_COMMAND_STOP = 2,
+	/** Acknowledge a fault whose cause is gone; indexing is needed afterwards */
+	LEVELWIND_COMMAND_CLEAR_FAULT = 3,
+	/** Check the staged parameters as a whole and make them active */
+	LEVELWIND_COMMAND_APPLY = 4,
+	/** Drop the staged parameters: staged becomes active again */
+	LEVELWIND_COMMAND_REVERT = 5,
+	/** Write the active parameters to non-volatile storage */
+	LEVELWIND_COMMAND_SAVE = 6,
+	/** Stage the factory values of everything but the line settings */
+	LEVELWIND_COMMAND_FACTORY_MOTION = 7,
+	/** Stage the factory line settings */
+	LEVELWIND_COMMAND_FACTORY_LINE = 8,
+	/** Stage all factory values */
+	LEVELWIND_COMMAND_FACTORY_ALL = 9,
+};
+
+/** How the last command ended */
+enum levelwind_result {
+	/** No command since power-up */
+	LEVELWIND_RESULT_NONE = 0,
+	/** Accepted, still running */
+	LEVELWIND_RESULT_IN_PROGRESS = 1,
+	/** Done */
+	LEVELWIND_RESULT_DONE = 2,
+	/** Refused, nothing changed; see command_reason */
+	LEVELWIND_RESULT_REFUSED = 3,
+	/** Started but did not succeed; see command_reason and fault */
+	LEVELWIND_RESULT_FAILED = 4,
+};
+
+/** Why a request, a command or a parameter set was refused */
+enum levelwind_reason {
+	/** Not refused */
+	LEVELWIND_REASON_NONE = 0,
+	/** This function code is not supported */
+	LEVELWIND_REASON_UNKNOWN_FUNCTION = 1,
+	/** No register or bit at this address */
+	LEVELWIND_REASON_UNKNOWN_ADDRESS = 2,
+	/** This register can only be read */
+	LEVELWIND_REASON_NOT_WRITABLE = 3,
+	/** A value of two registers must be written whole, in one request */
+	LEVELWIND_REASON_HALF_OF_PAIR = 4,
+	/** The value is outside the limits of this register */
+	LEVELWIND_REASON_OUT_OF_RANGE = 5,
+	/** The count is zero or too large for this function */
+	LEVELWIND_REASON_BAD_COUNT = 6,
+	/** The request is shorter or longer than its function and count say */
+	LEVELWIND_REASON_BAD_LENGTH = 7,
+	/** A coil is written with 0x0000 or 0xFF00 */
+	LEVELWIND_REASON_BAD_COIL_VALUE = 8,
+	/** One request can carry one command only */
+	LEVELWIND_REASON_SEVERAL_COMMANDS = 9,
+	/** Refused while tracking: stop, or set the mode to centre with the drum at rest */
+	LEVELWIND_REASON_BUSY_TRACKING = 10,
+	/** Refused while the carriage moves by itself: wait or give stop */
+	LEVELWIND_REASON_BUSY_MOVING = 11,
+	/** Refused while parameters are being saved: try again */
+	LEVELWIND_REASON_BUSY_SAVING = 12,
+	/** The drum must be at rest for this */
+	LEVELWIND_REASON_DRUM_MOVING = 13,
+	/** Stopped by a fault: remove the cause, then clear_fault or index */
+	LEVELWIND_REASON_IN_FAULT = 14,
+	/** The cause of the fault is still there */
+	LEVELWIND_REASON_CAUSE_PRESENT = 15,
+	/** Refused in mode off: set the mode to track or centre first */
+	LEVELWIND_REASON_MODE_OFF = 16,
+	/** Only motion away from the active overtravel switch is allowed */
+	LEVELWIND_REASON_OVERTRAVEL = 17,
+	/** The non-volatile storage reported an error */
+	LEVELWIND_REASON_STORAGE_FAILED = 18,
+	/** Ended by stop, mode off or a lost input before it was complete */
+	LEVELWIND_REASON_STOPPED = 19,
+	/** Ended by a fault, see the register fault */
+	LEVELWIND_REASON_FAULTED = 20,
+	/** This sub-function or object is not supported */
+	LEVELWIND_REASON_UNDEFINED_SUB_FUNCTION = 21,
+	/**
+	 * The pitch asks for more than one step per encoder edge: finer encoder edges, fewer
+	 * microsteps or a smaller pitch
+	 */
+	LEVELWIND_REASON_SLOPE_ABOVE_ONE_STEP = 30,
+	/** The pitch asks for less than 1/65536 step per edge */
+	LEVELWIND_REASON_SLOPE_TOO_SMALL = 31,
+	/**
+	 * No pair (Ka, Nr) meets pitch and overshoot within slope_tolerance_ppm: allow more
+	 * tolerance
+	 */
+	LEVELWIND_REASON_SLOPE_UNREACHABLE = 32,
+	/** reversal_minus must lie at least 2 microsteps below reversal_plus */
+	LEVELWIND_REASON_REVERSALS_CROSSED = 33,
+	/** switch_plus must lie inside reversal_plus */
+	LEVELWIND_REASON_SWITCH_PLUS_OUTSIDE = 34,
+	/** switch_minus must lie inside reversal_minus */
+	LEVELWIND_REASON_SWITCH_MINUS_OUTSIDE = 35,
+	/** switch_minus must lie below switch_plus by more than twice tolerance plus hysteresis */
+	LEVELWIND_REASON_SWITCHES_CROSSED = 36,
+	/** The overshoot past reversal_plus reaches beyond flange_plus */
+	LEVELWIND_REASON_OVERSHOOT_BEYOND_FLANGE_PLUS = 37,
+	/** The overshoot past reversal_minus reaches beyond flange_minus */
+	LEVELWIND_REASON_OVERSHOOT_BEYOND_FLANGE_MINUS = 38,
+	/** The parking place needs its last reversal (plus overshoot) inside the sweep */
+	LEVELWIND_REASON_PARK_OUTSIDE = 39,
+	/** centre_position must lie inside the reversal points */
+	LEVELWIND_REASON_CENTRE_OUTSIDE = 40,
+	/**
+	 * Two ramps of one overshoot each must fit between the switches, less tolerance and
+	 * hysteresis
+	 */
+	LEVELWIND_REASON_RAMP_DOES_NOT_FIT = 41,
+	/**
+	 * A position is beyond 32767 microsteps: fewer microsteps per revolution or a shorter
+	 * travel
+	 */
+	LEVELWIND_REASON_POSITION_OVERFLOW = 42,
+	/** travel must be at least the distance between the flanges */
+	LEVELWIND_REASON_TRAVEL_TOO_SHORT = 43,
+	/** overspeed_warning must not be above overspeed_trip */
+	LEVELWIND_REASON_OVERSPEED_LIMITS_CROSSED = 44,
+	/** A calibrated switch position plus its tolerance must stay inside the flange */
+	LEVELWIND_REASON_TOLERANCE_BEYOND_FLANGE = 45,
+	/** The encoder ratio gives less than one edge per drum revolution */
+	LEVELWIND_REASON_TOO_FEW_EDGES = 46,
+	/**
+	 * At the index rate the carriage would pass the reversal point before the switch is
+	 * debounced
+	 */
+	LEVELWIND_REASON_DEBOUNCE_TOO_LONG = 47,
+};
+
+/** What runs the core */
+enum levelwind_host {
+	/** POSIX simulator */
+	LEVELWIND_HOST_SIMULATOR = 1,
+	/** Zephyr native_sim */
+	LEVELWIND_HOST_NATIVE_SIM = 2,
+	/** Zephyr in QEMU */
+	LEVELWIND_HOST_QEMU = 3,
+	/** Zephyr on hardware */
+	LEVELWIND_HOST_HARDWARE = 4,
+};
+
+/** How a limit switch is wired */
+enum levelwind_switch_contacts {
+	/** Change-over switch, both contacts wired: no debounce delay, broken wires are found */
+	LEVELWIND_SWITCH_CONTACTS_NO_NC_PAIR = 0,
+	/** One normally open contact */
+	LEVELWIND_SWITCH_CONTACTS_SINGLE_NO = 1,
+	/** One normally closed contact */
+	LEVELWIND_SWITCH_CONTACTS_SINGLE_NC = 2,
+};
+
+/** A side of the drum */
+enum levelwind_side {
+	/** Plus side */
+	LEVELWIND_SIDE_PLUS = 0,
+	/** Minus side */
+	LEVELWIND_SIDE_MINUS = 1,
+};
+
+/** Where indexing ends */
+enum levelwind_park_at {
+	/** At the far point of the reversal opposite to the indexing switch */
+	LEVELWIND_PARK_AT_FLANGE = 0,
+	/** At park_position_um */
+	LEVELWIND_PARK_AT_POSITION = 1,
+};
+
+/** Data bits, parity, stop bits */
+enum levelwind_line_format {
+	/** 8 data bits, even parity, 1 stop bit (the standard's default) */
+	LEVELWIND_LINE_FORMAT_8E1 = 0,
+	/** 8 data bits, odd parity, 1 stop bit */
+	LEVELWIND_LINE_FORMAT_8O1 = 1,
+	/** 8 data bits, no parity, 1 stop bit */
+	LEVELWIND_LINE_FORMAT_8N1 = 2,
+	/** 8 data bits, no parity, 2 stop bits */
+	LEVELWIND_LINE_FORMAT_8N2 = 3,
+};
+
+/** Discrete inputs, and bit numbers of levelwind_status.flags */
+enum levelwind_flag {
+	/** The position is known */
+	LEVELWIND_FLAG_INDEXED = 0,
+	/** The carriage follows the drum */
+	LEVELWIND_FLAG_TRACKING = 1,
+	/** A launch may begin; see launch_inhibit if not */
+	LEVELWIND_FLAG_LAUNCH_PERMIT = 2,
+	/** The carriage moves by itself (indexing, centring, jogging) */
+	LEVELWIND_FLAG_MOVING = 3,
+	/** The drum is slower than rest_edges_per_s for rest_time_ms */
+	LEVELWIND_FLAG_DRUM_AT_REST = 4,
+	/** Stopped by a fault */
+	LEVELWIND_FLAG_FAULTED = 5,
+	/** Any loss of synchronization since the last indexing: the rope may be laid wrong */
+	LEVELWIND_FLAG_LOS = 6,
+	/** LOS type 1+: reversal at plus entered, its switch did not trigger on the way */
+	LEVELWIND_FLAG_LOS1_PLUS = 7,
+	/** LOS type 1-: reversal at minus entered, its switch did not trigger on the way */
+	LEVELWIND_FLAG_LOS1_MINUS = 8,
+	/** LOS type 2+: plus switch triggered outside its tolerance */
+	LEVELWIND_FLAG_LOS2_PLUS = 9,
+	/** LOS type 2-: minus switch triggered outside its tolerance */
+	LEVELWIND_FLAG_LOS2_MINUS = 10,
+	/** Plus limit switch actuated (debounced) */
+	LEVELWIND_FLAG_SWITCH_PLUS = 11,
+	/** Minus limit switch actuated (debounced) */
+	LEVELWIND_FLAG_SWITCH_MINUS = 12,
+	/** Plus limit switch wiring fault */
+	LEVELWIND_FLAG_WIRING_PLUS = 13,
+	/** Minus limit switch wiring fault */
+	LEVELWIND_FLAG_WIRING_MINUS = 14,
+	/** Plus overtravel switch actuated */
+	LEVELWIND_FLAG_OVERTRAVEL_PLUS = 15,
+	/** Minus overtravel switch actuated */
+	LEVELWIND_FLAG_OVERTRAVEL_MINUS = 16,
+	/** The drum is faster than overspeed_warning_edges_per_s */
+	LEVELWIND_FLAG_OVERSPEED_WARNING = 17,
+	/** The drum was faster than overspeed_trip_edges_per_s (sticky until clear_fault) */
+	LEVELWIND_FLAG_OVERSPEED_TRIP = 18,
+	/** No valid request for master_timeout_ms */
+	LEVELWIND_FLAG_MASTER_LOST = 19,
+	/** Staged parameters differ from the active ones: APPLY or REVERT */
+	LEVELWIND_FLAG_STAGED = 20,
+	/** Active parameters differ from the stored ones: SAVE to keep them */
+	LEVELWIND_FLAG_DIRTY = 21,
+	/** No usable stored set was found at power-up: factory values are active */
+	LEVELWIND_FLAG_DEFAULTS_LOADED = 22,
+	/** A trim waits for the carriage to be in the sweep */
+	LEVELWIND_FLAG_TRIM_PENDING = 23,
+	/** A re-index correction waits for the end of the reversal */
+	LEVELWIND_FLAG_CORRECTION_PENDING = 24,
+	/** The stepper has current */
+	LEVELWIND_FLAG_STEPPER_ENABLED = 25,
+	/** The active line settings differ from those in use: SAVE and restart */
+	LEVELWIND_FLAG_RESTART_NEEDED = 26,
+};
+
+/** Bit numbers of levelwind_status.launch_inhibit */
+enum levelwind_launch_inhibit_bit {
+	/** The state is not tracking */
+	LEVELWIND_LAUNCH_INHIBIT_NOT_TRACKING = 0,
+	/** Synchronization was lost: index again */
+	LEVELWIND_LAUNCH_INHIBIT_LOS = 1,
+	/** A fault stands */
+	LEVELWIND_LAUNCH_INHIBIT_FAULT = 2,
+	/** A limit switch has a wiring fault */
+	LEVELWIND_LAUNCH_INHIBIT_WIRING = 3,
+	/** An overtravel switch is actuated */
+	LEVELWIND_LAUNCH_INHIBIT_OVERTRAVEL = 4,
+	/** The drum tripped the overspeed limit */
+	LEVELWIND_LAUNCH_INHIBIT_OVERSPEED = 5,
+	/** The Modbus master is silent */
+	LEVELWIND_LAUNCH_INHIBIT_MASTER_LOST = 6,
+	/** A re-index correction is pending */
+	LEVELWIND_LAUNCH_INHIBIT_CORRECTION = 7,
+};
+
+/** Where a point belongs */
+enum levelwind_block {
+	/** Commands and set-points, effective at once, never stored */
+	LEVELWIND_BLOCK_SETPOINTS = 0,
+	/** Parameters (staged). APPLY makes them active, SAVE stores the active set */
+	LEVELWIND_BLOCK_PARAMETERS = 1,
+	/** Identity, live status, LOS records, counters, command results and derived values */
+	LEVELWIND_BLOCK_STATUS = 2,
+};
+
+/* Protocol addresses of holding and input registers. */
+#define LEVELWIND_ADDRESS_COMMAND                       0
+#define LEVELWIND_ADDRESS_MODE                          1
+#define LEVELWIND_ADDRESS_JOG                           2
+#define LEVELWIND_ADDRESS_TRIM_PLUS_UM                  3
+#define LEVELWIND_ADDRESS_TRIM_MINUS_UM                 4
+#define LEVELWIND_ADDRESS_ENCODER_PULSES_PER_REV        100
+#define LEVELWIND_ADDRESS_ENCODER_EDGES_PER_PULSE       101
+#define LEVELWIND_ADDRESS_ENCODER_RATIO_NUMERATOR       102
+#define LEVELWIND_ADDRESS_ENCODER_RATIO_DENOMINATOR     103
+#define LEVELWIND_ADDRESS_ENCODER_INVERT_A              104
+#define LEVELWIND_ADDRESS_ENCODER_INVERT_B              105
+#define LEVELWIND_ADDRESS_DRUM_DIRECTION_INVERT         106
+#define LEVELWIND_ADDRESS_ROPE_PER_DRUM_REV_UM          107
+#define LEVELWIND_ADDRESS_SCREW_LEAD_UM                 110
+#define LEVELWIND_ADDRESS_MICROSTEPS_PER_REV            112
+#define LEVELWIND_ADDRESS_CARRIAGE_DIRECTION_INVERT     113
+#define LEVELWIND_ADDRESS_PITCH_UM                      114
+#define LEVELWIND_ADDRESS_OVERSHOOT_UM                  116
+#define LEVELWIND_ADDRESS_SLOPE_TOLERANCE_PPM           118
+#define LEVELWIND_ADDRESS_REVERSAL_PLUS_UM              120
+#define LEVELWIND_ADDRESS_REVERSAL_MINUS_UM             122
+#define LEVELWIND_ADDRESS_FLANGE_PLUS_UM                124
+#define LEVELWIND_ADDRESS_FLANGE_MINUS_UM               126
+#define LEVELWIND_ADDRESS_SWITCH_PLUS_UM                128
+#define LEVELWIND_ADDRESS_SWITCH_MINUS_UM               130
+#define LEVELWIND_ADDRESS_SWITCH_TOLERANCE_UM           132
+#define LEVELWIND_ADDRESS_SWITCH_HYSTERESIS_UM          133
+#define LEVELWIND_ADDRESS_SWITCH_CONTACTS               134
+#define LEVELWIND_ADDRESS_SWITCH_TRANSIT_MS             135
+#define LEVELWIND_ADDRESS_SWITCH_DEBOUNCE_MS            136
+#define LEVELWIND_ADDRESS_TRAVEL_UM                     137
+#define LEVELWIND_ADDRESS_INDEX_SWITCH                  140
+#define LEVELWIND_ADDRESS_INDEX_RATE_EDGES_PER_S        141
+#define LEVELWIND_ADDRESS_PARK_AT                       142
+#define LEVELWIND_ADDRESS_PARK_POSITION_UM              143
+#define LEVELWIND_ADDRESS_SPAN_TOLERANCE_UM             145
+#define LEVELWIND_ADDRESS_HANDOVER_DIRECTION            146
+#define LEVELWIND_ADDRESS_REST_EDGES_PER_S              147
+#define LEVELWIND_ADDRESS_REST_TIME_MS                  148
+#define LEVELWIND_ADDRESS_CENTRE_POSITION_UM            149
+#define LEVELWIND_ADDRESS_JOG_RATE_EDGES_PER_S          151
+#define LEVELWIND_ADDRESS_JOG_HOLD_MS                   152
+#define LEVELWIND_ADDRESS_LOS_RECOVERIES_MAX            160
+#define LEVELWIND_ADDRESS_OVERSPEED_WARNING_EDGES_PER_S 161
+#define LEVELWIND_ADDRESS_OVERSPEED_TRIP_EDGES_PER_S    163
+#define LEVELWIND_ADDRESS_MASTER_TIMEOUT_MS             165
+#define LEVELWIND_ADDRESS_DWELL_PLUS_MILLIREV           166
+#define LEVELWIND_ADDRESS_DWELL_MINUS_MILLIREV          167
+#define LEVELWIND_ADDRESS_EXPERT_MODE                   170
+#define LEVELWIND_ADDRESS_RAW_KA                        171
+#define LEVELWIND_ADDRESS_RAW_NR                        172
+#define LEVELWIND_ADDRESS_RAW_REVERSAL_PLUS_USTEPS      173
+#define LEVELWIND_ADDRESS_RAW_REVERSAL_MINUS_USTEPS     174
+#define LEVELWIND_ADDRESS_UNIT_ID                       180
+#define LEVELWIND_ADDRESS_BAUD_RATE                     181
+#define LEVELWIND_ADDRESS_LINE_FORMAT                   183
+#define LEVELWIND_ADDRESS_SELF_TEST                     0
+#define LEVELWIND_ADDRESS_MAP_VERSION                   2
+#define LEVELWIND_ADDRESS_VERSION_MAJOR                 3
+#define LEVELWIND_ADDRESS_VERSION_MINOR                 4
+#define LEVELWIND_ADDRESS_VERSION_PATCH                 5
+#define LEVELWIND_ADDRESS_HOST                          6
+#define LEVELWIND_ADDRESS_STATE                         100
+#define LEVELWIND_ADDRESS_ACTIVE_MODE                   101
+#define LEVELWIND_ADDRESS_FAULT                         102
+#define LEVELWIND_ADDRESS_FLAGS                         103
+#define LEVELWIND_ADDRESS_LAUNCH_INHIBIT                105
+#define LEVELWIND_ADDRESS_POSITION_UM                   106
+#define LEVELWIND_ADDRESS_POSITION_USTEPS               108
+#define LEVELWIND_ADDRESS_M                             109
+#define LEVELWIND_ADDRESS_U                             111
+#define LEVELWIND_ADDRESS_DRUM_SPEED_EDGES_PER_S        113
+#define LEVELWIND_ADDRESS_ROPE_SPEED_MM_PER_S           115
+#define LEVELWIND_ADDRESS_ROPE_MM                       117
+#define LEVELWIND_ADDRESS_NET_EDGES                     119
+#define LEVELWIND_ADDRESS_PATTERN_EDGES                 123
+#define LEVELWIND_ADDRESS_UPTIME_MS                     127
+#define LEVELWIND_ADDRESS_LOS_RECOVERIES                129
+#define LEVELWIND_ADDRESS_SPAN_ERROR_UM                 130
+#define LEVELWIND_ADDRESS_LOS1_PLUS_COUNT               200
+#define LEVELWIND_ADDRESS_LOS1_PLUS_POSITION_UM         201
+#define LEVELWIND_ADDRESS_LOS1_PLUS_TIME_MS             203
+#define LEVELWIND_ADDRESS_LOS1_MINUS_COUNT              210
+#define LEVELWIND_ADDRESS_LOS1_MINUS_POSITION_UM        211
+#define LEVELWIND_ADDRESS_LOS1_MINUS_TIME_MS            213
+#define LEVELWIND_ADDRESS_LOS2_PLUS_COUNT               220
+#define LEVELWIND_ADDRESS_LOS2_PLUS_POSITION_UM         221
+#define LEVELWIND_ADDRESS_LOS2_PLUS_TIME_MS             223
+#define LEVELWIND_ADDRESS_LOS2_MINUS_COUNT              230
+#define LEVELWIND_ADDRESS_LOS2_MINUS_POSITION_UM        231
+#define LEVELWIND_ADDRESS_LOS2_MINUS_TIME_MS            233
+#define LEVELWIND_ADDRESS_ILLEGAL_TRANSITIONS           300
+#define LEVELWIND_ADDRESS_SWITCH_PLUS_TRIGGERS          302
+#define LEVELWIND_ADDRESS_SWITCH_MINUS_TRIGGERS         304
+#define LEVELWIND_ADDRESS_STEPS                         306
+#define LEVELWIND_ADDRESS_REQUESTS                      308
+#define LEVELWIND_ADDRESS_CRC_ERRORS                    310
+#define LEVELWIND_ADDRESS_EXCEPTIONS                    312
+#define LEVELWIND_ADDRESS_COMMAND_SEQUENCE              400
+#define LEVELWIND_ADDRESS_COMMAND_CODE                  401
+#define LEVELWIND_ADDRESS_COMMAND_RESULT                402
+#define LEVELWIND_ADDRESS_COMMAND_REASON                403
+#define LEVELWIND_ADDRESS_COMMAND_ADDRESS               404
+#define LEVELWIND_ADDRESS_COMMAND_VALUE                 405
+#define LEVELWIND_ADDRESS_COMMAND_LIMIT                 407
+#define LEVELWIND_ADDRESS_LAST_ERROR_REASON             410
+#define LEVELWIND_ADDRESS_LAST_ERROR_FUNCTION           411
+#define LEVELWIND_ADDRESS_LAST_ERROR_EXCEPTION          412
+#define LEVELWIND_ADDRESS_LAST_ERROR_ADDRESS            413
+#define LEVELWIND_ADDRESS_LAST_ERROR_VALUE              414
+#define LEVELWIND_ADDRESS_LAST_ERROR_LIMIT              416
+#define LEVELWIND_ADDRESS_KA                            500
+#define LEVELWIND_ADDRESS_NR                            502
+#define LEVELWIND_ADDRESS_KS                            504
+#define LEVELWIND_ADDRESS_REVERSAL_PLUS_USTEPS          506
+#define LEVELWIND_ADDRESS_REVERSAL_MINUS_USTEPS         507
+#define LEVELWIND_ADDRESS_OVERSHOOT_ACTUAL_UM           508
+#define LEVELWIND_ADDRESS_SLOPE_ERROR_PPM               510
+#define LEVELWIND_ADDRESS_OVERSHOOT_ERROR_UM            512
+#define LEVELWIND_ADDRESS_EDGES_PER_1000_DRUM_REVS      514
+#define LEVELWIND_ADDRESS_DWELL_PLUS_EDGES              516
+#define LEVELWIND_ADDRESS_DWELL_MINUS_EDGES             518
+
+/* Added to the address of a parameter: its read-only copies, input registers. */
+#define LEVELWIND_ACTIVE_ADDRESS_OFFSET 1000
+#define LEVELWIND_STORED_ADDRESS_OFFSET 2000
+
+/** Identity, live status, LOS records, counters, command results and derived values */
+struct levelwind_status {
+	/** Always 0x12345678: the master's word order is right when it reads so */
+	uint32_t self_test;
+	/** Version of this map */
+	int32_t map_version;
+	/** Firmware version, major */
+	int32_t version_major;
+	/** Firmware version, minor */
+	int32_t version_minor;
+	/** Firmware version, patch */
+	int32_t version_patch;
+	/** What runs the core (enum levelwind_host) */
+	int32_t host;
+	/** What the controller is doing (enum levelwind_state) */
+	int32_t state;
+	/** Mode in force (the requested one waits for the drum to rest) (enum levelwind_mode) */
+	int32_t active_mode;
+	/** Why the controller stopped (enum levelwind_fault) */
+	int32_t fault;
+	/**
+	 * All discrete inputs in one pair, bit number = discrete input address (bits: enum
+	 * levelwind_flag)
+	 */
+	uint32_t flags;
+	/**
+	 * Why a launch is not permitted; 0 means launch permit (bits: enum
+	 * levelwind_launch_inhibit_bit)
+	 */
+	int32_t launch_inhibit;
+	/** Carriage position [um] */
+	int32_t position_um;
+	/** Carriage position, whole microsteps [usteps] */
+	int32_t position_usteps;
+	/** Carriage position, Q16.16 [usteps/65536] */
+	int32_t m;
+	/** Slope: microsteps that one forward edge moves the carriage, Q16.16 [usteps/65536] */
+	int32_t u;
+	/** Drum speed, positive hauls rope in [edges/s] */
+	int32_t drum_speed_edges_per_s;
+	/** Rope speed, positive hauls in [mm/s] */
+	int32_t rope_speed_mm_per_s;
+	/** Rope hauled in (positive) or paid out since power-up [mm] */
+	int32_t rope_mm;
+	/** Odometer: net drum edges since power-up [edges] */
+	int64_t net_edges;
+	/** Net edges followed since the last hand-over [edges] */
+	int64_t pattern_edges;
+	/** Time since power-up [ms] */
+	uint32_t uptime_ms;
+	/** Re-indexings after a LOS in this launch */
+	int32_t los_recoveries;
+	/** Last indexing: found minus calibrated position of the other switch [um] */
+	int32_t span_error_um;
+	/** LOS type 1+ since power-up */
+	int32_t los1_plus_count;
+	/** Position of the first since the last indexing [um] */
+	int32_t los1_plus_position_um;
+	/** Its time since power-up [ms] */
+	uint32_t los1_plus_time_ms;
+	/** LOS type 1- since power-up */
+	int32_t los1_minus_count;
+	/** Position of the first since the last indexing [um] */
+	int32_t los1_minus_position_um;
+	/** Its time since power-up [ms] */
+	uint32_t los1_minus_time_ms;
+	/** LOS type 2+ since power-up */
+	int32_t los2_plus_count;
+	/** Position of the first since the last indexing [um] */
+	int32_t los2_plus_position_um;
+	/** Its time since power-up [ms] */
+	uint32_t los2_plus_time_ms;
+	/** LOS type 2- since power-up */
+	int32_t los2_minus_count;
+	/** Position of the first since the last indexing [um] */
+	int32_t los2_minus_position_um;
+	/** Its time since power-up [ms] */
+	uint32_t los2_minus_time_ms;
+	/** Encoder transitions of both channels at once since power-up */
+	uint32_t illegal_transitions;
+	/** Trigger events of the plus limit switch */
+	uint32_t switch_plus_triggers;
+	/** Trigger events of the minus limit switch */
+	uint32_t switch_minus_triggers;
+	/** Step pulses given since power-up [usteps] */
+	uint32_t steps;
+	/** Modbus requests answered or executed */
+	uint32_t requests;
+	/** Modbus frames with a wrong CRC */
+	uint32_t crc_errors;
+	/** Modbus exceptions answered */
+	uint32_t exceptions;
+	/** Counts every command, also refused ones */
+	int32_t command_sequence;
+	/** The last command (enum levelwind_command) */
+	int32_t command_code;
+	/** How it ended (enum levelwind_result) */
+	int32_t command_result;
+	/** Why it was refused or failed (enum levelwind_reason) */
+	int32_t command_reason;
+	/** Offending holding register, 65535 if none */
+	int32_t command_address;
+	/** Offending value */
+	int32_t command_value;
+	/** The limit that it broke */
+	int32_t command_limit;
+	/** Why the last refused request was refused (enum levelwind_reason) */
+	int32_t last_error_reason;
+	/** Its function code */
+	int32_t last_error_function;
+	/** The exception answered */
+	int32_t last_error_exception;
+	/** The offending address */
+	int32_t last_error_address;
+	/** The offending value */
+	int32_t last_error_value;
+	/** The limit that it broke */
+	int32_t last_error_limit;
+	/** Slope change per edge in a reversal, in force [usteps/65536] */
+	int32_t ka;
+	/** Edges from sweep slope to zero slope, in force [edges] */
+	int32_t nr;
+	/** Sweep slope per edge, in force: Ks = Ka * Nr [usteps/65536] */
+	int32_t ks;
+	/** L+ in force, trim included [usteps] */
+	int32_t reversal_plus_usteps;
+	/** L- in force, trim included [usteps] */
+	int32_t reversal_minus_usteps;
+	/** Overshoot in force: Ks * (Nr - 1) / 2 [um] */
+	int32_t overshoot_actual_um;
+	/** Residual error of the pitch [ppm] */
+	int32_t slope_error_ppm;
+	/** Residual error of the overshoot [um] */
+	int32_t overshoot_error_um;
+	/** Used encoder edges per 1000 drum revolutions, rounded [edges] */
+	uint32_t edges_per_1000_drum_revs;
+	/** Dwell at the plus side [edges] */
+	uint32_t dwell_plus_edges;
+	/** Dwell at the minus side [edges] */
+	uint32_t dwell_minus_edges;
+};
+
+/** One value of an enumeration, or one bit number of a bit field */
+struct levelwind_value {
+	int32_t value;
+	const char *name; /**< its name in the map */
+	const char *text; /**< one line for a person in the field */
+};
+
+/** Types on the wire; 32 and 64 bit values carry the high word first */
+enum levelwind_type {
+	LEVELWIND_TYPE_U16, /**< in memory int32_t */
+	LEVELWIND_TYPE_I16, /**< in memory int32_t */
+	LEVELWIND_TYPE_U32, /**< in memory uint32_t */
+	LEVELWIND_TYPE_I32, /**< in memory int32_t */
+	LEVELWIND_TYPE_I64, /**< in memory int64_t */
+};
+
+/** One value of the map */
+struct levelwind_point {
+	const char *name;
+	const char *unit; /**< "" if it has none */
+	const char *text; /**< one line for a person in the field */
+	enum levelwind_block block;
+	enum levelwind_type type;
+	uint16_t address; /**< first 0-based protocol address */
+	uint16_t words;   /**< registers */
+	size_t offset;    /**< of a status point: its member in struct levelwind_status */
+	int32_t min;      /**< smallest value that may be written; not for status points */
+	int32_t max;      /**< largest value that may be written */
+	int32_t default_value;
+	const int32_t *allowed; /**< the only values that may be written, or NULL */
+	size_t allowed_count;
+	const struct levelwind_value *values; /**< names of the values or bits, or NULL */
+	size_t value_count;
+};
+
+#define LEVELWIND_POINT_COUNT 122
+
+/** All points, by block and rising address */
+extern const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT];
+
+#endif /* LEVELWIND_MAP_H */

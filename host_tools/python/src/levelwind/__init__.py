@@ -1,0 +1,1 @@
+"""The laptop tool of the levelwind controller."""

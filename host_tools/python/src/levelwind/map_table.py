@@ -1,0 +1,2599 @@
+"""The Modbus map: every point, enumeration, limit and default.
+
+Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
+Do not edit.
+"""
+# ruff: noqa: E501
+
+from dataclasses import dataclass, field
+from enum import IntEnum
+from typing import Literal
+
+Space = Literal["coil", "discrete", "holding", "input"]
+Type = Literal["bit", "u16", "i16", "u32", "i32", "i64"]
+
+
+class MapEnum(IntEnum):
+    """An enumeration of the map. Members know their name in the map and their text."""
+
+    label: str
+    text: str
+
+    def __new__(cls, value: int, label: str, text: str) -> "MapEnum":
+        member = int.__new__(cls, value)
+        member._value_ = value
+        member.label = label
+        member.text = text
+        return member
+
+
+class State(MapEnum):
+    """What the controller is doing."""
+
+    UNINDEXED = 0, "unindexed", "Position unknown. Give the command index"
+    BACKING_OFF = (
+        1,
+        "backing_off",
+        "Indexing: moving off a limit switch that was active at the start",
+    )
+    SEEKING = 2, "seeking", "Indexing: moving toward the indexing switch"
+    INDEX_REVERSAL = (
+        3,
+        "index_reversal",
+        "Indexing: switch found, turning round at the reversal point",
+    )
+    SPAN_CHECK = 4, "span_check", "Indexing: sweeping back to check the other switch"
+    PARKING = 5, "parking", "Indexing: coming to rest at the parking place"
+    READY = (
+        6,
+        "ready",
+        "Indexed and at rest. Follows the drum as soon as the mode is track and the drum is at rest",
+    )
+    TRACKING = 7, "tracking", "Following the drum"
+    CENTRING = 8, "centring", "Moving to the centre"
+    CENTRED = 9, "centred", "Held at the centre, the drum is not followed"
+    JOGGING = 10, "jogging", "Moving by hand"
+    OFF = 11, "off", "Stepper without current, position unknown"
+    FAULT = 12, "fault", "Stopped by a fault, see the register fault"
+
+
+class Mode(MapEnum):
+    """What the carriage shall do."""
+
+    OFF = 0, "off", "Stepper without current. The index is lost"
+    TRACK = 1, "track", "Follow the drum once indexed"
+    CENTRE = 2, "centre", "Hold the carriage at the centre, for pulling rope out"
+
+
+class Fault(MapEnum):
+    """Why the controller stopped."""
+
+    NONE = 0, "none", "No fault"
+    INDEX_NO_SWITCH = (
+        1,
+        "index_no_switch",
+        "Indexing: no limit switch within the travel. Is the carriage free, is the stepper powered?",
+    )
+    INDEX_WRONG_SWITCH = (
+        2,
+        "index_wrong_switch",
+        "Indexing: the opposite switch came first. Check the stepper direction and which switch is which",
+    )
+    INDEX_SPAN = (
+        3,
+        "index_span",
+        "Indexing: the other switch is not where it was calibrated. Check both switches, then their calibrated positions",
+    )
+    BOTH_SWITCHES_ACTIVE = (
+        4,
+        "both_switches_active",
+        "Both limit switches are active at once. Check the switch wiring",
+    )
+    BACK_OFF_NO_RELEASE = (
+        5,
+        "back_off_no_release",
+        "The limit switch did not release although the carriage moved away. Stuck switch, or the stepper does not move",
+    )
+    WIRING_PLUS = (
+        6,
+        "wiring_plus",
+        "Plus limit switch: contacts contradict each other or both stay open. Broken wire or short",
+    )
+    WIRING_MINUS = (
+        7,
+        "wiring_minus",
+        "Minus limit switch: contacts contradict each other or both stay open. Broken wire or short",
+    )
+    OVERTRAVEL_PLUS = (
+        8,
+        "overtravel_plus",
+        "Plus overtravel switch: stepper disabled, only motion toward minus is allowed",
+    )
+    OVERTRAVEL_MINUS = (
+        9,
+        "overtravel_minus",
+        "Minus overtravel switch: stepper disabled, only motion toward plus is allowed",
+    )
+    OVERSPEED = (
+        10,
+        "overspeed",
+        "The drum turned faster than overspeed_trip_edges_per_s, the stepper cannot follow",
+    )
+    LOS_LIMIT = (
+        11,
+        "los_limit",
+        "More losses of synchronization in one launch than los_recoveries_max",
+    )
+
+
+class Command(MapEnum):
+    """Momentary commands, by the register command or by the coil of the same name."""
+
+    NONE = 0, "none", "Nothing"
+    INDEX = 1, "index", "Find the position (homing). The drum must be at rest"
+    STOP = 2, "stop", "Stop every motion now. Always accepted"
+    CLEAR_FAULT = (
+        3,
+        "clear_fault",
+        "Acknowledge a fault whose cause is gone; indexing is needed afterwards",
+    )
+    APPLY = 4, "apply", "Check the staged parameters as a whole and make them active"
+    REVERT = 5, "revert", "Drop the staged parameters: staged becomes active again"
+    SAVE = 6, "save", "Write the active parameters to non-volatile storage"
+    FACTORY_MOTION = (
+        7,
+        "factory_motion",
+        "Stage the factory values of everything but the line settings",
+    )
+    FACTORY_LINE = 8, "factory_line", "Stage the factory line settings"
+    FACTORY_ALL = 9, "factory_all", "Stage all factory values"
+
+
+class Result(MapEnum):
+    """How the last command ended."""
+
+    NONE = 0, "none", "No command since power-up"
+    IN_PROGRESS = 1, "in_progress", "Accepted, still running"
+    DONE = 2, "done", "Done"
+    REFUSED = 3, "refused", "Refused, nothing changed; see command_reason"
+    FAILED = 4, "failed", "Started but did not succeed; see command_reason and fault"
+
+
+class Reason(MapEnum):
+    """Why a request, a command or a parameter set was refused."""
+
+    NONE = 0, "none", "Not refused"
+    UNKNOWN_FUNCTION = 1, "unknown_function", "This function code is not supported"
+    UNKNOWN_ADDRESS = 2, "unknown_address", "No register or bit at this address"
+    NOT_WRITABLE = 3, "not_writable", "This register can only be read"
+    HALF_OF_PAIR = (
+        4,
+        "half_of_pair",
+        "A value of two registers must be written whole, in one request",
+    )
+    OUT_OF_RANGE = 5, "out_of_range", "The value is outside the limits of this register"
+    BAD_COUNT = 6, "bad_count", "The count is zero or too large for this function"
+    BAD_LENGTH = 7, "bad_length", "The request is shorter or longer than its function and count say"
+    BAD_COIL_VALUE = 8, "bad_coil_value", "A coil is written with 0x0000 or 0xFF00"
+    SEVERAL_COMMANDS = 9, "several_commands", "One request can carry one command only"
+    BUSY_TRACKING = (
+        10,
+        "busy_tracking",
+        "Refused while tracking: stop, or set the mode to centre with the drum at rest",
+    )
+    BUSY_MOVING = 11, "busy_moving", "Refused while the carriage moves by itself: wait or give stop"
+    BUSY_SAVING = 12, "busy_saving", "Refused while parameters are being saved: try again"
+    DRUM_MOVING = 13, "drum_moving", "The drum must be at rest for this"
+    IN_FAULT = 14, "in_fault", "Stopped by a fault: remove the cause, then clear_fault or index"
+    CAUSE_PRESENT = 15, "cause_present", "The cause of the fault is still there"
+    MODE_OFF = 16, "mode_off", "Refused in mode off: set the mode to track or centre first"
+    OVERTRAVEL = 17, "overtravel", "Only motion away from the active overtravel switch is allowed"
+    STORAGE_FAILED = 18, "storage_failed", "The non-volatile storage reported an error"
+    STOPPED = 19, "stopped", "Ended by stop, mode off or a lost input before it was complete"
+    FAULTED = 20, "faulted", "Ended by a fault, see the register fault"
+    UNDEFINED_SUB_FUNCTION = (
+        21,
+        "undefined_sub_function",
+        "This sub-function or object is not supported",
+    )
+    SLOPE_ABOVE_ONE_STEP = (
+        30,
+        "slope_above_one_step",
+        "The pitch asks for more than one step per encoder edge: finer encoder edges, fewer microsteps or a smaller pitch",
+    )
+    SLOPE_TOO_SMALL = 31, "slope_too_small", "The pitch asks for less than 1/65536 step per edge"
+    SLOPE_UNREACHABLE = (
+        32,
+        "slope_unreachable",
+        "No pair (Ka, Nr) meets pitch and overshoot within slope_tolerance_ppm: allow more tolerance",
+    )
+    REVERSALS_CROSSED = (
+        33,
+        "reversals_crossed",
+        "reversal_minus must lie at least 2 microsteps below reversal_plus",
+    )
+    SWITCH_PLUS_OUTSIDE = 34, "switch_plus_outside", "switch_plus must lie inside reversal_plus"
+    SWITCH_MINUS_OUTSIDE = 35, "switch_minus_outside", "switch_minus must lie inside reversal_minus"
+    SWITCHES_CROSSED = (
+        36,
+        "switches_crossed",
+        "switch_minus must lie below switch_plus by more than twice tolerance plus hysteresis",
+    )
+    OVERSHOOT_BEYOND_FLANGE_PLUS = (
+        37,
+        "overshoot_beyond_flange_plus",
+        "The overshoot past reversal_plus reaches beyond flange_plus",
+    )
+    OVERSHOOT_BEYOND_FLANGE_MINUS = (
+        38,
+        "overshoot_beyond_flange_minus",
+        "The overshoot past reversal_minus reaches beyond flange_minus",
+    )
+    PARK_OUTSIDE = (
+        39,
+        "park_outside",
+        "The parking place needs its last reversal (plus overshoot) inside the sweep",
+    )
+    CENTRE_OUTSIDE = 40, "centre_outside", "centre_position must lie inside the reversal points"
+    RAMP_DOES_NOT_FIT = (
+        41,
+        "ramp_does_not_fit",
+        "Two ramps of one overshoot each must fit between the switches, less tolerance and hysteresis",
+    )
+    POSITION_OVERFLOW = (
+        42,
+        "position_overflow",
+        "A position is beyond 32767 microsteps: fewer microsteps per revolution or a shorter travel",
+    )
+    TRAVEL_TOO_SHORT = (
+        43,
+        "travel_too_short",
+        "travel must be at least the distance between the flanges",
+    )
+    OVERSPEED_LIMITS_CROSSED = (
+        44,
+        "overspeed_limits_crossed",
+        "overspeed_warning must not be above overspeed_trip",
+    )
+    TOLERANCE_BEYOND_FLANGE = (
+        45,
+        "tolerance_beyond_flange",
+        "A calibrated switch position plus its tolerance must stay inside the flange",
+    )
+    TOO_FEW_EDGES = (
+        46,
+        "too_few_edges",
+        "The encoder ratio gives less than one edge per drum revolution",
+    )
+    DEBOUNCE_TOO_LONG = (
+        47,
+        "debounce_too_long",
+        "At the index rate the carriage would pass the reversal point before the switch is debounced",
+    )
+
+
+class Host(MapEnum):
+    """What runs the core."""
+
+    SIMULATOR = 1, "simulator", "POSIX simulator"
+    NATIVE_SIM = 2, "native_sim", "Zephyr native_sim"
+    QEMU = 3, "qemu", "Zephyr in QEMU"
+    HARDWARE = 4, "hardware", "Zephyr on hardware"
+
+
+class SwitchContacts(MapEnum):
+    """How a limit switch is wired."""
+
+    NO_NC_PAIR = (
+        0,
+        "no_nc_pair",
+        "Change-over switch, both contacts wired: no debounce delay, broken wires are found",
+    )
+    SINGLE_NO = 1, "single_no", "One normally open contact"
+    SINGLE_NC = 2, "single_nc", "One normally closed contact"
+
+
+class Side(MapEnum):
+    """A side of the drum."""
+
+    PLUS = 0, "plus", "Plus side"
+    MINUS = 1, "minus", "Minus side"
+
+
+class ParkAt(MapEnum):
+    """Where indexing ends."""
+
+    FLANGE = 0, "flange", "At the far point of the reversal opposite to the indexing switch"
+    POSITION = 1, "position", "At park_position_um"
+
+
+class LineFormat(MapEnum):
+    """Data bits, parity, stop bits."""
+
+    FORMAT_8E1 = 0, "8E1", "8 data bits, even parity, 1 stop bit (the standard's default)"
+    FORMAT_8O1 = 1, "8O1", "8 data bits, odd parity, 1 stop bit"
+    FORMAT_8N1 = 2, "8N1", "8 data bits, no parity, 1 stop bit"
+    FORMAT_8N2 = 3, "8N2", "8 data bits, no parity, 2 stop bits"
+
+
+class BenchCommand(MapEnum):
+    """Commands of the simulated plant."""
+
+    NONE = 0, "none", "Nothing"
+    PROFILE_CLEAR = 1, "profile_clear", "Forget the drum speed profile"
+    PROFILE_APPEND = (
+        2,
+        "profile_append",
+        "Append the first bench_argument points of the window bench_profile",
+    )
+    PROFILE_START = 3, "profile_start", "Play the profile from its beginning"
+    POWER_CUT = 4, "power_cut", "Restart the controller; the plant goes on"
+    SLIP = 5, "slip", "Move the carriage by bench_argument microsteps against the stepper"
+    LOSE_PULSES = 6, "lose_pulses", "Swallow the next bench_argument encoder pulses"
+    DITHER = 7, "dither", "Rock the encoder bench_argument times about the present edge"
+    ILLEGAL_TRANSITIONS = (
+        8,
+        "illegal_transitions",
+        "Change both encoder channels at once bench_argument times",
+    )
+    PLACE_CARRIAGE = (
+        9,
+        "place_carriage",
+        "Put the carriage at bench_argument micrometres by hand (stepper off)",
+    )
+
+
+class SwitchFault(MapEnum):
+    """Faults of a simulated limit switch."""
+
+    NONE = 0, "none", "Works"
+    STUCK_RELEASED = 1, "stuck_released", "Never actuates"
+    STUCK_ACTUATED = 2, "stuck_actuated", "Always actuated"
+    NO_WIRE_BROKEN = 3, "no_wire_broken", "NO contact never seen closed"
+    NC_WIRE_BROKEN = 4, "nc_wire_broken", "NC contact never seen closed"
+    SHORTED = 5, "shorted", "Both contacts seen closed"
+
+
+class TriggerFault(MapEnum):
+    """Faults that an armed position can release."""
+
+    NONE = 0, "none", "Not armed"
+    STALL = 1, "stall", "Hold the carriage for bench_trigger_argument milliseconds"
+    SLIP = 2, "slip", "Move the carriage by bench_trigger_argument microsteps"
+    LOSE_PULSES = 3, "lose_pulses", "Swallow bench_trigger_argument encoder pulses"
+
+
+class Flag(MapEnum):
+    """Discrete inputs, and bit numbers of the point flags."""
+
+    INDEXED = 0, "indexed", "The position is known"
+    TRACKING = 1, "tracking", "The carriage follows the drum"
+    LAUNCH_PERMIT = 2, "launch_permit", "A launch may begin; see launch_inhibit if not"
+    MOVING = 3, "moving", "The carriage moves by itself (indexing, centring, jogging)"
+    DRUM_AT_REST = 4, "drum_at_rest", "The drum is slower than rest_edges_per_s for rest_time_ms"
+    FAULTED = 5, "faulted", "Stopped by a fault"
+    LOS = (
+        6,
+        "los",
+        "Any loss of synchronization since the last indexing: the rope may be laid wrong",
+    )
+    LOS1_PLUS = (
+        7,
+        "los1_plus",
+        "LOS type 1+: reversal at plus entered, its switch did not trigger on the way",
+    )
+    LOS1_MINUS = (
+        8,
+        "los1_minus",
+        "LOS type 1-: reversal at minus entered, its switch did not trigger on the way",
+    )
+    LOS2_PLUS = 9, "los2_plus", "LOS type 2+: plus switch triggered outside its tolerance"
+    LOS2_MINUS = 10, "los2_minus", "LOS type 2-: minus switch triggered outside its tolerance"
+    SWITCH_PLUS = 11, "switch_plus", "Plus limit switch actuated (debounced)"
+    SWITCH_MINUS = 12, "switch_minus", "Minus limit switch actuated (debounced)"
+    WIRING_PLUS = 13, "wiring_plus", "Plus limit switch wiring fault"
+    WIRING_MINUS = 14, "wiring_minus", "Minus limit switch wiring fault"
+    OVERTRAVEL_PLUS = 15, "overtravel_plus", "Plus overtravel switch actuated"
+    OVERTRAVEL_MINUS = 16, "overtravel_minus", "Minus overtravel switch actuated"
+    OVERSPEED_WARNING = (
+        17,
+        "overspeed_warning",
+        "The drum is faster than overspeed_warning_edges_per_s",
+    )
+    OVERSPEED_TRIP = (
+        18,
+        "overspeed_trip",
+        "The drum was faster than overspeed_trip_edges_per_s (sticky until clear_fault)",
+    )
+    MASTER_LOST = 19, "master_lost", "No valid request for master_timeout_ms"
+    STAGED = 20, "staged", "Staged parameters differ from the active ones: APPLY or REVERT"
+    DIRTY = 21, "dirty", "Active parameters differ from the stored ones: SAVE to keep them"
+    DEFAULTS_LOADED = (
+        22,
+        "defaults_loaded",
+        "No usable stored set was found at power-up: factory values are active",
+    )
+    TRIM_PENDING = 23, "trim_pending", "A trim waits for the carriage to be in the sweep"
+    CORRECTION_PENDING = (
+        24,
+        "correction_pending",
+        "A re-index correction waits for the end of the reversal",
+    )
+    STEPPER_ENABLED = 25, "stepper_enabled", "The stepper has current"
+    RESTART_NEEDED = (
+        26,
+        "restart_needed",
+        "The active line settings differ from those in use: SAVE and restart",
+    )
+
+
+class LaunchInhibit(MapEnum):
+    """Bit numbers of the point launch_inhibit."""
+
+    NOT_TRACKING = 0, "not_tracking", "The state is not tracking"
+    LOS = 1, "los", "Synchronization was lost: index again"
+    FAULT = 2, "fault", "A fault stands"
+    WIRING = 3, "wiring", "A limit switch has a wiring fault"
+    OVERTRAVEL = 4, "overtravel", "An overtravel switch is actuated"
+    OVERSPEED = 5, "overspeed", "The drum tripped the overspeed limit"
+    MASTER_LOST = 6, "master_lost", "The Modbus master is silent"
+    CORRECTION = 7, "correction", "A re-index correction is pending"
+
+
+@dataclass(frozen=True)
+class Point:
+    """One value, array of values, or bit. Registers carry the high word first."""
+
+    name: str
+    address: int
+    space: Space
+    type: Type
+    text: str
+    block: str
+    words: int = 1  # registers of one element
+    count: int = 1  # elements
+    min: int | None = None  # what a write may carry; None where nothing can be written
+    max: int | None = None
+    allowed: tuple[int, ...] = ()  # the only values that a write may carry, if not empty
+    default: int | None = None
+    unit: str = ""
+    scope: Literal["", "motion", "line"] = ""
+    writable: bool = False
+    command: bool = False  # writing a value other than 0 runs a command
+    reindex: bool = False  # a change makes the index invalid
+    enum: type[MapEnum] | None = None  # names of the values
+    bits: type[MapEnum] | None = None  # names of the bits, by bit number
+    mirrors: dict[str, int] = field(default_factory=dict)  # input register addresses by copy
+
+
+MAP_VERSION = 1
+SELF_TEST = 0x12345678
+VENDOR = "levelwind"
+PRODUCT_CODE = "LW1"
+PRODUCT_NAME = "level wind controller"
+PRODUCT_URL = "https://github.com/levelwind/levelwind"
+PRODUCT_VERSION = "0.1.0"
+
+# Every point of the map by its name, in the order of the map.
+POINTS: dict[str, Point] = {
+    point.name: point
+    for point in (
+        Point(
+            name="index",
+            address=0,
+            space="coil",
+            type="bit",
+            text="Find the position (homing)",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="stop",
+            address=1,
+            space="coil",
+            type="bit",
+            text="Stop every motion now",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="clear_fault",
+            address=2,
+            space="coil",
+            type="bit",
+            text="Acknowledge a fault",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="apply",
+            address=3,
+            space="coil",
+            type="bit",
+            text="Make the staged parameters active",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="revert",
+            address=4,
+            space="coil",
+            type="bit",
+            text="Drop the staged parameters",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="save",
+            address=5,
+            space="coil",
+            type="bit",
+            text="Save the active parameters",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="jog_plus",
+            address=6,
+            space="coil",
+            type="bit",
+            text="Jog toward plus while held: write again within jog_hold_ms",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="jog_minus",
+            address=7,
+            space="coil",
+            type="bit",
+            text="Jog toward minus while held: write again within jog_hold_ms",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="indexed",
+            address=0,
+            space="discrete",
+            type="bit",
+            text="The position is known",
+            block="discretes",
+        ),
+        Point(
+            name="tracking",
+            address=1,
+            space="discrete",
+            type="bit",
+            text="The carriage follows the drum",
+            block="discretes",
+        ),
+        Point(
+            name="launch_permit",
+            address=2,
+            space="discrete",
+            type="bit",
+            text="A launch may begin; see launch_inhibit if not",
+            block="discretes",
+        ),
+        Point(
+            name="moving",
+            address=3,
+            space="discrete",
+            type="bit",
+            text="The carriage moves by itself (indexing, centring, jogging)",
+            block="discretes",
+        ),
+        Point(
+            name="drum_at_rest",
+            address=4,
+            space="discrete",
+            type="bit",
+            text="The drum is slower than rest_edges_per_s for rest_time_ms",
+            block="discretes",
+        ),
+        Point(
+            name="faulted",
+            address=5,
+            space="discrete",
+            type="bit",
+            text="Stopped by a fault",
+            block="discretes",
+        ),
+        Point(
+            name="los",
+            address=6,
+            space="discrete",
+            type="bit",
+            text="Any loss of synchronization since the last indexing: the rope may be laid wrong",
+            block="discretes",
+        ),
+        Point(
+            name="los1_plus",
+            address=7,
+            space="discrete",
+            type="bit",
+            text="LOS type 1+: reversal at plus entered, its switch did not trigger on the way",
+            block="discretes",
+        ),
+        Point(
+            name="los1_minus",
+            address=8,
+            space="discrete",
+            type="bit",
+            text="LOS type 1-: reversal at minus entered, its switch did not trigger on the way",
+            block="discretes",
+        ),
+        Point(
+            name="los2_plus",
+            address=9,
+            space="discrete",
+            type="bit",
+            text="LOS type 2+: plus switch triggered outside its tolerance",
+            block="discretes",
+        ),
+        Point(
+            name="los2_minus",
+            address=10,
+            space="discrete",
+            type="bit",
+            text="LOS type 2-: minus switch triggered outside its tolerance",
+            block="discretes",
+        ),
+        Point(
+            name="switch_plus",
+            address=11,
+            space="discrete",
+            type="bit",
+            text="Plus limit switch actuated (debounced)",
+            block="discretes",
+        ),
+        Point(
+            name="switch_minus",
+            address=12,
+            space="discrete",
+            type="bit",
+            text="Minus limit switch actuated (debounced)",
+            block="discretes",
+        ),
+        Point(
+            name="wiring_plus",
+            address=13,
+            space="discrete",
+            type="bit",
+            text="Plus limit switch wiring fault",
+            block="discretes",
+        ),
+        Point(
+            name="wiring_minus",
+            address=14,
+            space="discrete",
+            type="bit",
+            text="Minus limit switch wiring fault",
+            block="discretes",
+        ),
+        Point(
+            name="overtravel_plus",
+            address=15,
+            space="discrete",
+            type="bit",
+            text="Plus overtravel switch actuated",
+            block="discretes",
+        ),
+        Point(
+            name="overtravel_minus",
+            address=16,
+            space="discrete",
+            type="bit",
+            text="Minus overtravel switch actuated",
+            block="discretes",
+        ),
+        Point(
+            name="overspeed_warning",
+            address=17,
+            space="discrete",
+            type="bit",
+            text="The drum is faster than overspeed_warning_edges_per_s",
+            block="discretes",
+        ),
+        Point(
+            name="overspeed_trip",
+            address=18,
+            space="discrete",
+            type="bit",
+            text="The drum was faster than overspeed_trip_edges_per_s (sticky until clear_fault)",
+            block="discretes",
+        ),
+        Point(
+            name="master_lost",
+            address=19,
+            space="discrete",
+            type="bit",
+            text="No valid request for master_timeout_ms",
+            block="discretes",
+        ),
+        Point(
+            name="staged",
+            address=20,
+            space="discrete",
+            type="bit",
+            text="Staged parameters differ from the active ones: APPLY or REVERT",
+            block="discretes",
+        ),
+        Point(
+            name="dirty",
+            address=21,
+            space="discrete",
+            type="bit",
+            text="Active parameters differ from the stored ones: SAVE to keep them",
+            block="discretes",
+        ),
+        Point(
+            name="defaults_loaded",
+            address=22,
+            space="discrete",
+            type="bit",
+            text="No usable stored set was found at power-up: factory values are active",
+            block="discretes",
+        ),
+        Point(
+            name="trim_pending",
+            address=23,
+            space="discrete",
+            type="bit",
+            text="A trim waits for the carriage to be in the sweep",
+            block="discretes",
+        ),
+        Point(
+            name="correction_pending",
+            address=24,
+            space="discrete",
+            type="bit",
+            text="A re-index correction waits for the end of the reversal",
+            block="discretes",
+        ),
+        Point(
+            name="stepper_enabled",
+            address=25,
+            space="discrete",
+            type="bit",
+            text="The stepper has current",
+            block="discretes",
+        ),
+        Point(
+            name="restart_needed",
+            address=26,
+            space="discrete",
+            type="bit",
+            text="The active line settings differ from those in use: SAVE and restart",
+            block="discretes",
+        ),
+        Point(
+            name="command",
+            address=0,
+            space="holding",
+            type="u16",
+            text="Writing a code runs the command; reads the last one",
+            block="setpoints",
+            min=0,
+            max=9,
+            default=0,
+            writable=True,
+            command=True,
+            enum=Command,
+        ),
+        Point(
+            name="mode",
+            address=1,
+            space="holding",
+            type="u16",
+            text="Requested mode, taken over when the drum is at rest (off: at once)",
+            block="setpoints",
+            min=0,
+            max=2,
+            default=1,
+            writable=True,
+            enum=Mode,
+        ),
+        Point(
+            name="jog",
+            address=2,
+            space="holding",
+            type="i16",
+            text="Held jog: -1, 0 or +1; write again within jog_hold_ms or it stops",
+            block="setpoints",
+            min=-1,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="trim_plus_um",
+            address=3,
+            space="holding",
+            type="i16",
+            text="Live shift of reversal_plus, applied in the sweep only",
+            block="setpoints",
+            min=-20000,
+            max=20000,
+            default=0,
+            unit="um",
+            writable=True,
+        ),
+        Point(
+            name="trim_minus_um",
+            address=4,
+            space="holding",
+            type="i16",
+            text="Live shift of reversal_minus, applied in the sweep only",
+            block="setpoints",
+            min=-20000,
+            max=20000,
+            default=0,
+            unit="um",
+            writable=True,
+        ),
+        Point(
+            name="encoder_pulses_per_rev",
+            address=100,
+            space="holding",
+            type="u16",
+            text="Encoder pulses per revolution of its shaft",
+            block="parameters",
+            min=1,
+            max=10000,
+            default=360,
+            unit="pulses",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1100, "stored": 2100},
+        ),
+        Point(
+            name="encoder_edges_per_pulse",
+            address=101,
+            space="holding",
+            type="u16",
+            text="Edges used per pulse",
+            block="parameters",
+            min=1,
+            max=4,
+            allowed=(1, 2, 4),
+            default=2,
+            unit="edges",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1101, "stored": 2101},
+        ),
+        Point(
+            name="encoder_ratio_numerator",
+            address=102,
+            space="holding",
+            type="u16",
+            text="Encoder revolutions per drum revolution, numerator",
+            block="parameters",
+            min=1,
+            max=1000,
+            default=4,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1102, "stored": 2102},
+        ),
+        Point(
+            name="encoder_ratio_denominator",
+            address=103,
+            space="holding",
+            type="u16",
+            text="Encoder revolutions per drum revolution, denominator",
+            block="parameters",
+            min=1,
+            max=1000,
+            default=1,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1103, "stored": 2103},
+        ),
+        Point(
+            name="encoder_invert_a",
+            address=104,
+            space="holding",
+            type="u16",
+            text="1 inverts encoder channel A",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1104, "stored": 2104},
+        ),
+        Point(
+            name="encoder_invert_b",
+            address=105,
+            space="holding",
+            type="u16",
+            text="1 inverts encoder channel B",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1105, "stored": 2105},
+        ),
+        Point(
+            name="drum_direction_invert",
+            address=106,
+            space="holding",
+            type="u16",
+            text="1 swaps the sign of drum motion; hauling rope in must count positive",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1106, "stored": 2106},
+        ),
+        Point(
+            name="rope_per_drum_rev_um",
+            address=107,
+            space="holding",
+            type="u32",
+            text="Rope hauled in per drum revolution, for the odometer",
+            block="parameters",
+            words=2,
+            min=1000,
+            max=20000000,
+            default=2400000,
+            unit="um",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1107, "stored": 2107},
+        ),
+        Point(
+            name="screw_lead_um",
+            address=110,
+            space="holding",
+            type="u32",
+            text="Carriage travel per screw revolution",
+            block="parameters",
+            words=2,
+            min=500,
+            max=100000,
+            default=20000,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1110, "stored": 2110},
+        ),
+        Point(
+            name="microsteps_per_rev",
+            address=112,
+            space="holding",
+            type="u16",
+            text="Microsteps per stepper revolution, as set at the stepper driver",
+            block="parameters",
+            min=200,
+            max=51200,
+            default=2000,
+            unit="usteps",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1112, "stored": 2112},
+        ),
+        Point(
+            name="carriage_direction_invert",
+            address=113,
+            space="holding",
+            type="u16",
+            text="1 inverts the stepper's direction output",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1113, "stored": 2113},
+        ),
+        Point(
+            name="pitch_um",
+            address=114,
+            space="holding",
+            type="u32",
+            text="Carriage travel per drum revolution",
+            block="parameters",
+            words=2,
+            min=10,
+            max=100000,
+            default=12000,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1114, "stored": 2114},
+        ),
+        Point(
+            name="overshoot_um",
+            address=116,
+            space="holding",
+            type="u32",
+            text="How far a reversal runs past the reversal point",
+            block="parameters",
+            words=2,
+            min=1,
+            max=50000,
+            default=2500,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1116, "stored": 2116},
+        ),
+        Point(
+            name="slope_tolerance_ppm",
+            address=118,
+            space="holding",
+            type="u16",
+            text="How far the pitch may be off to meet the overshoot",
+            block="parameters",
+            min=1,
+            max=50000,
+            default=500,
+            unit="ppm",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1118, "stored": 2118},
+        ),
+        Point(
+            name="reversal_plus_um",
+            address=120,
+            space="holding",
+            type="i32",
+            text="Where the reversal at the plus side begins",
+            block="parameters",
+            words=2,
+            min=-500000,
+            max=500000,
+            default=80000,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1120, "stored": 2120},
+        ),
+        Point(
+            name="reversal_minus_um",
+            address=122,
+            space="holding",
+            type="i32",
+            text="Where the reversal at the minus side begins",
+            block="parameters",
+            words=2,
+            min=-500000,
+            max=500000,
+            default=-80000,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1122, "stored": 2122},
+        ),
+        Point(
+            name="flange_plus_um",
+            address=124,
+            space="holding",
+            type="i32",
+            text="Farthest place on the plus side that the carriage may be commanded to",
+            block="parameters",
+            words=2,
+            min=-500000,
+            max=500000,
+            default=82500,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1124, "stored": 2124},
+        ),
+        Point(
+            name="flange_minus_um",
+            address=126,
+            space="holding",
+            type="i32",
+            text="Farthest place on the minus side that the carriage may be commanded to",
+            block="parameters",
+            words=2,
+            min=-500000,
+            max=500000,
+            default=-82500,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1126, "stored": 2126},
+        ),
+        Point(
+            name="switch_plus_um",
+            address=128,
+            space="holding",
+            type="i32",
+            text="Calibrated trigger position of the plus limit switch",
+            block="parameters",
+            words=2,
+            min=-500000,
+            max=500000,
+            default=78400,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1128, "stored": 2128},
+        ),
+        Point(
+            name="switch_minus_um",
+            address=130,
+            space="holding",
+            type="i32",
+            text="Calibrated trigger position of the minus limit switch",
+            block="parameters",
+            words=2,
+            min=-500000,
+            max=500000,
+            default=-78400,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1130, "stored": 2130},
+        ),
+        Point(
+            name="switch_tolerance_um",
+            address=132,
+            space="holding",
+            type="u16",
+            text="A trigger further than this from its calibrated position is a LOS of type 2",
+            block="parameters",
+            min=10,
+            max=20000,
+            default=1000,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1132, "stored": 2132},
+        ),
+        Point(
+            name="switch_hysteresis_um",
+            address=133,
+            space="holding",
+            type="u16",
+            text="Within this distance inward of its trigger point a switch has surely released",
+            block="parameters",
+            min=10,
+            max=20000,
+            default=1500,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1133, "stored": 2133},
+        ),
+        Point(
+            name="switch_contacts",
+            address=134,
+            space="holding",
+            type="u16",
+            text="How the limit switches are wired",
+            block="parameters",
+            min=0,
+            max=2,
+            default=0,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            enum=SwitchContacts,
+            mirrors={"active": 1134, "stored": 2134},
+        ),
+        Point(
+            name="switch_transit_ms",
+            address=135,
+            space="holding",
+            type="u16",
+            text="Both contacts open longer than this is a wiring fault",
+            block="parameters",
+            min=1,
+            max=90,
+            default=20,
+            unit="ms",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1135, "stored": 2135},
+        ),
+        Point(
+            name="switch_debounce_ms",
+            address=136,
+            space="holding",
+            type="u16",
+            text="Debounce time of a single contact",
+            block="parameters",
+            min=1,
+            max=100,
+            default=5,
+            unit="ms",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1136, "stored": 2136},
+        ),
+        Point(
+            name="travel_um",
+            address=137,
+            space="holding",
+            type="u32",
+            text="Carriage travel between the mechanical end stops",
+            block="parameters",
+            words=2,
+            min=1000,
+            max=600000,
+            default=180000,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1137, "stored": 2137},
+        ),
+        Point(
+            name="index_switch",
+            address=140,
+            space="holding",
+            type="u16",
+            text="Which limit switch is the indexing switch",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            enum=Side,
+            mirrors={"active": 1140, "stored": 2140},
+        ),
+        Point(
+            name="index_rate_edges_per_s",
+            address=141,
+            space="holding",
+            type="u16",
+            text="Rate of the simulated edges for indexing and centring",
+            block="parameters",
+            min=100,
+            max=50000,
+            default=10000,
+            unit="edges/s",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1141, "stored": 2141},
+        ),
+        Point(
+            name="park_at",
+            address=142,
+            space="holding",
+            type="u16",
+            text="Where indexing ends",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            enum=ParkAt,
+            mirrors={"active": 1142, "stored": 2142},
+        ),
+        Point(
+            name="park_position_um",
+            address=143,
+            space="holding",
+            type="i32",
+            text="Parking place if park_at is position",
+            block="parameters",
+            words=2,
+            min=-500000,
+            max=500000,
+            default=0,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1143, "stored": 2143},
+        ),
+        Point(
+            name="span_tolerance_um",
+            address=145,
+            space="holding",
+            type="u16",
+            text="Indexing: how far the other switch may be from its calibrated position",
+            block="parameters",
+            min=10,
+            max=20000,
+            default=1000,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1145, "stored": 2145},
+        ),
+        Point(
+            name="handover_direction",
+            address=146,
+            space="holding",
+            type="u16",
+            text="Carriage direction on hand-over from a parking position or the centre, drum hauling in",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            enum=Side,
+            mirrors={"active": 1146, "stored": 2146},
+        ),
+        Point(
+            name="rest_edges_per_s",
+            address=147,
+            space="holding",
+            type="u16",
+            text="The drum counts as at rest below this rate",
+            block="parameters",
+            min=1,
+            max=5000,
+            default=50,
+            unit="edges/s",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1147, "stored": 2147},
+        ),
+        Point(
+            name="rest_time_ms",
+            address=148,
+            space="holding",
+            type="u16",
+            text="The drum counts as at rest after this time below rest_edges_per_s",
+            block="parameters",
+            min=10,
+            max=10000,
+            default=200,
+            unit="ms",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1148, "stored": 2148},
+        ),
+        Point(
+            name="centre_position_um",
+            address=149,
+            space="holding",
+            type="i32",
+            text="Where mode centre holds the carriage",
+            block="parameters",
+            words=2,
+            min=-500000,
+            max=500000,
+            default=0,
+            unit="um",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1149, "stored": 2149},
+        ),
+        Point(
+            name="jog_rate_edges_per_s",
+            address=151,
+            space="holding",
+            type="u16",
+            text="Rate of the simulated edges for jogging",
+            block="parameters",
+            min=100,
+            max=50000,
+            default=5000,
+            unit="edges/s",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1151, "stored": 2151},
+        ),
+        Point(
+            name="jog_hold_ms",
+            address=152,
+            space="holding",
+            type="u16",
+            text="A jog stops when it is not written again within this time",
+            block="parameters",
+            min=50,
+            max=5000,
+            default=500,
+            unit="ms",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1152, "stored": 2152},
+        ),
+        Point(
+            name="los_recoveries_max",
+            address=160,
+            space="holding",
+            type="u16",
+            text="Stop after more LOS recoveries than this in one launch (0: never stop)",
+            block="parameters",
+            min=0,
+            max=1000,
+            default=3,
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1160, "stored": 2160},
+        ),
+        Point(
+            name="overspeed_warning_edges_per_s",
+            address=161,
+            space="holding",
+            type="u32",
+            text="Drum speed that sets the flag overspeed_warning",
+            block="parameters",
+            words=2,
+            min=100,
+            max=1000000,
+            default=52000,
+            unit="edges/s",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1161, "stored": 2161},
+        ),
+        Point(
+            name="overspeed_trip_edges_per_s",
+            address=163,
+            space="holding",
+            type="u32",
+            text="Drum speed that stops the controller",
+            block="parameters",
+            words=2,
+            min=100,
+            max=1000000,
+            default=60000,
+            unit="edges/s",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1163, "stored": 2163},
+        ),
+        Point(
+            name="master_timeout_ms",
+            address=165,
+            space="holding",
+            type="u16",
+            text="Without a valid request for this long the launch permit drops (0: not watched)",
+            block="parameters",
+            min=0,
+            max=60000,
+            default=0,
+            unit="ms",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1165, "stored": 2165},
+        ),
+        Point(
+            name="dwell_plus_millirev",
+            address=166,
+            space="holding",
+            type="u16",
+            text="Dwell at the far point of the plus reversal",
+            block="parameters",
+            min=0,
+            max=10000,
+            default=0,
+            unit="1/1000 drum rev",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1166, "stored": 2166},
+        ),
+        Point(
+            name="dwell_minus_millirev",
+            address=167,
+            space="holding",
+            type="u16",
+            text="Dwell at the far point of the minus reversal",
+            block="parameters",
+            min=0,
+            max=10000,
+            default=0,
+            unit="1/1000 drum rev",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1167, "stored": 2167},
+        ),
+        Point(
+            name="expert_mode",
+            address=170,
+            space="holding",
+            type="u16",
+            text="1: the four raw_ values replace pitch, overshoot and reversal points",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1170, "stored": 2170},
+        ),
+        Point(
+            name="raw_ka",
+            address=171,
+            space="holding",
+            type="u16",
+            text="Slope change per edge in a reversal",
+            block="parameters",
+            min=1,
+            max=65535,
+            default=23,
+            unit="usteps/65536",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1171, "stored": 2171},
+        ),
+        Point(
+            name="raw_nr",
+            address=172,
+            space="holding",
+            type="u16",
+            text="Edges from sweep slope to zero slope; Ks = Ka * Nr",
+            block="parameters",
+            min=1,
+            max=65535,
+            default=1187,
+            unit="edges",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1172, "stored": 2172},
+        ),
+        Point(
+            name="raw_reversal_plus_usteps",
+            address=173,
+            space="holding",
+            type="i16",
+            text="L+",
+            block="parameters",
+            min=-32000,
+            max=32000,
+            default=8000,
+            unit="usteps",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1173, "stored": 2173},
+        ),
+        Point(
+            name="raw_reversal_minus_usteps",
+            address=174,
+            space="holding",
+            type="i16",
+            text="L-",
+            block="parameters",
+            min=-32000,
+            max=32000,
+            default=-8000,
+            unit="usteps",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1174, "stored": 2174},
+        ),
+        Point(
+            name="unit_id",
+            address=180,
+            space="holding",
+            type="u16",
+            text="Modbus unit id, effective after APPLY, SAVE and restart",
+            block="parameters",
+            min=1,
+            max=247,
+            default=1,
+            scope="line",
+            writable=True,
+            mirrors={"active": 1180, "stored": 2180},
+        ),
+        Point(
+            name="baud_rate",
+            address=181,
+            space="holding",
+            type="u32",
+            text="Line speed, effective after APPLY, SAVE and restart",
+            block="parameters",
+            words=2,
+            min=1200,
+            max=115200,
+            allowed=(1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200),
+            default=19200,
+            unit="baud",
+            scope="line",
+            writable=True,
+            mirrors={"active": 1181, "stored": 2181},
+        ),
+        Point(
+            name="line_format",
+            address=183,
+            space="holding",
+            type="u16",
+            text="Data bits, parity, stop bits, effective after APPLY, SAVE and restart",
+            block="parameters",
+            min=0,
+            max=3,
+            default=0,
+            scope="line",
+            writable=True,
+            enum=LineFormat,
+            mirrors={"active": 1183, "stored": 2183},
+        ),
+        Point(
+            name="self_test",
+            address=0,
+            space="input",
+            type="u32",
+            text="Always 0x12345678: the master's word order is right when it reads so",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="map_version",
+            address=2,
+            space="input",
+            type="u16",
+            text="Version of this map",
+            block="status",
+        ),
+        Point(
+            name="version_major",
+            address=3,
+            space="input",
+            type="u16",
+            text="Firmware version, major",
+            block="status",
+        ),
+        Point(
+            name="version_minor",
+            address=4,
+            space="input",
+            type="u16",
+            text="Firmware version, minor",
+            block="status",
+        ),
+        Point(
+            name="version_patch",
+            address=5,
+            space="input",
+            type="u16",
+            text="Firmware version, patch",
+            block="status",
+        ),
+        Point(
+            name="host",
+            address=6,
+            space="input",
+            type="u16",
+            text="What runs the core",
+            block="status",
+            enum=Host,
+        ),
+        Point(
+            name="state",
+            address=100,
+            space="input",
+            type="u16",
+            text="What the controller is doing",
+            block="status",
+            enum=State,
+        ),
+        Point(
+            name="active_mode",
+            address=101,
+            space="input",
+            type="u16",
+            text="Mode in force (the requested one waits for the drum to rest)",
+            block="status",
+            enum=Mode,
+        ),
+        Point(
+            name="fault",
+            address=102,
+            space="input",
+            type="u16",
+            text="Why the controller stopped",
+            block="status",
+            enum=Fault,
+        ),
+        Point(
+            name="flags",
+            address=103,
+            space="input",
+            type="u32",
+            text="All discrete inputs in one pair, bit number = discrete input address",
+            block="status",
+            words=2,
+            bits=Flag,
+        ),
+        Point(
+            name="launch_inhibit",
+            address=105,
+            space="input",
+            type="u16",
+            text="Why a launch is not permitted; 0 means launch permit",
+            block="status",
+            bits=LaunchInhibit,
+        ),
+        Point(
+            name="position_um",
+            address=106,
+            space="input",
+            type="i32",
+            text="Carriage position",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="position_usteps",
+            address=108,
+            space="input",
+            type="i16",
+            text="Carriage position, whole microsteps",
+            block="status",
+            unit="usteps",
+        ),
+        Point(
+            name="m",
+            address=109,
+            space="input",
+            type="i32",
+            text="Carriage position, Q16.16",
+            block="status",
+            words=2,
+            unit="usteps/65536",
+        ),
+        Point(
+            name="u",
+            address=111,
+            space="input",
+            type="i32",
+            text="Slope: microsteps that one forward edge moves the carriage, Q16.16",
+            block="status",
+            words=2,
+            unit="usteps/65536",
+        ),
+        Point(
+            name="drum_speed_edges_per_s",
+            address=113,
+            space="input",
+            type="i32",
+            text="Drum speed, positive hauls rope in",
+            block="status",
+            words=2,
+            unit="edges/s",
+        ),
+        Point(
+            name="rope_speed_mm_per_s",
+            address=115,
+            space="input",
+            type="i32",
+            text="Rope speed, positive hauls in",
+            block="status",
+            words=2,
+            unit="mm/s",
+        ),
+        Point(
+            name="rope_mm",
+            address=117,
+            space="input",
+            type="i32",
+            text="Rope hauled in (positive) or paid out since power-up",
+            block="status",
+            words=2,
+            unit="mm",
+        ),
+        Point(
+            name="net_edges",
+            address=119,
+            space="input",
+            type="i64",
+            text="Odometer: net drum edges since power-up",
+            block="status",
+            words=4,
+            unit="edges",
+        ),
+        Point(
+            name="pattern_edges",
+            address=123,
+            space="input",
+            type="i64",
+            text="Net edges followed since the last hand-over",
+            block="status",
+            words=4,
+            unit="edges",
+        ),
+        Point(
+            name="uptime_ms",
+            address=127,
+            space="input",
+            type="u32",
+            text="Time since power-up",
+            block="status",
+            words=2,
+            unit="ms",
+        ),
+        Point(
+            name="los_recoveries",
+            address=129,
+            space="input",
+            type="u16",
+            text="Re-indexings after a LOS in this launch",
+            block="status",
+        ),
+        Point(
+            name="span_error_um",
+            address=130,
+            space="input",
+            type="i32",
+            text="Last indexing: found minus calibrated position of the other switch",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="los1_plus_count",
+            address=200,
+            space="input",
+            type="u16",
+            text="LOS type 1+ since power-up",
+            block="status",
+        ),
+        Point(
+            name="los1_plus_position_um",
+            address=201,
+            space="input",
+            type="i32",
+            text="Position of the first since the last indexing",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="los1_plus_time_ms",
+            address=203,
+            space="input",
+            type="u32",
+            text="Its time since power-up",
+            block="status",
+            words=2,
+            unit="ms",
+        ),
+        Point(
+            name="los1_minus_count",
+            address=210,
+            space="input",
+            type="u16",
+            text="LOS type 1- since power-up",
+            block="status",
+        ),
+        Point(
+            name="los1_minus_position_um",
+            address=211,
+            space="input",
+            type="i32",
+            text="Position of the first since the last indexing",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="los1_minus_time_ms",
+            address=213,
+            space="input",
+            type="u32",
+            text="Its time since power-up",
+            block="status",
+            words=2,
+            unit="ms",
+        ),
+        Point(
+            name="los2_plus_count",
+            address=220,
+            space="input",
+            type="u16",
+            text="LOS type 2+ since power-up",
+            block="status",
+        ),
+        Point(
+            name="los2_plus_position_um",
+            address=221,
+            space="input",
+            type="i32",
+            text="Position of the first since the last indexing",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="los2_plus_time_ms",
+            address=223,
+            space="input",
+            type="u32",
+            text="Its time since power-up",
+            block="status",
+            words=2,
+            unit="ms",
+        ),
+        Point(
+            name="los2_minus_count",
+            address=230,
+            space="input",
+            type="u16",
+            text="LOS type 2- since power-up",
+            block="status",
+        ),
+        Point(
+            name="los2_minus_position_um",
+            address=231,
+            space="input",
+            type="i32",
+            text="Position of the first since the last indexing",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="los2_minus_time_ms",
+            address=233,
+            space="input",
+            type="u32",
+            text="Its time since power-up",
+            block="status",
+            words=2,
+            unit="ms",
+        ),
+        Point(
+            name="illegal_transitions",
+            address=300,
+            space="input",
+            type="u32",
+            text="Encoder transitions of both channels at once since power-up",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="switch_plus_triggers",
+            address=302,
+            space="input",
+            type="u32",
+            text="Trigger events of the plus limit switch",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="switch_minus_triggers",
+            address=304,
+            space="input",
+            type="u32",
+            text="Trigger events of the minus limit switch",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="steps",
+            address=306,
+            space="input",
+            type="u32",
+            text="Step pulses given since power-up",
+            block="status",
+            words=2,
+            unit="usteps",
+        ),
+        Point(
+            name="requests",
+            address=308,
+            space="input",
+            type="u32",
+            text="Modbus requests answered or executed",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="crc_errors",
+            address=310,
+            space="input",
+            type="u32",
+            text="Modbus frames with a wrong CRC",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="exceptions",
+            address=312,
+            space="input",
+            type="u32",
+            text="Modbus exceptions answered",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="command_sequence",
+            address=400,
+            space="input",
+            type="u16",
+            text="Counts every command, also refused ones",
+            block="status",
+        ),
+        Point(
+            name="command_code",
+            address=401,
+            space="input",
+            type="u16",
+            text="The last command",
+            block="status",
+            enum=Command,
+        ),
+        Point(
+            name="command_result",
+            address=402,
+            space="input",
+            type="u16",
+            text="How it ended",
+            block="status",
+            enum=Result,
+        ),
+        Point(
+            name="command_reason",
+            address=403,
+            space="input",
+            type="u16",
+            text="Why it was refused or failed",
+            block="status",
+            enum=Reason,
+        ),
+        Point(
+            name="command_address",
+            address=404,
+            space="input",
+            type="u16",
+            text="Offending holding register, 65535 if none",
+            block="status",
+        ),
+        Point(
+            name="command_value",
+            address=405,
+            space="input",
+            type="i32",
+            text="Offending value",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="command_limit",
+            address=407,
+            space="input",
+            type="i32",
+            text="The limit that it broke",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="last_error_reason",
+            address=410,
+            space="input",
+            type="u16",
+            text="Why the last refused request was refused",
+            block="status",
+            enum=Reason,
+        ),
+        Point(
+            name="last_error_function",
+            address=411,
+            space="input",
+            type="u16",
+            text="Its function code",
+            block="status",
+        ),
+        Point(
+            name="last_error_exception",
+            address=412,
+            space="input",
+            type="u16",
+            text="The exception answered",
+            block="status",
+        ),
+        Point(
+            name="last_error_address",
+            address=413,
+            space="input",
+            type="u16",
+            text="The offending address",
+            block="status",
+        ),
+        Point(
+            name="last_error_value",
+            address=414,
+            space="input",
+            type="i32",
+            text="The offending value",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="last_error_limit",
+            address=416,
+            space="input",
+            type="i32",
+            text="The limit that it broke",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="ka",
+            address=500,
+            space="input",
+            type="i32",
+            text="Slope change per edge in a reversal, in force",
+            block="status",
+            words=2,
+            unit="usteps/65536",
+        ),
+        Point(
+            name="nr",
+            address=502,
+            space="input",
+            type="i32",
+            text="Edges from sweep slope to zero slope, in force",
+            block="status",
+            words=2,
+            unit="edges",
+        ),
+        Point(
+            name="ks",
+            address=504,
+            space="input",
+            type="i32",
+            text="Sweep slope per edge, in force: Ks = Ka * Nr",
+            block="status",
+            words=2,
+            unit="usteps/65536",
+        ),
+        Point(
+            name="reversal_plus_usteps",
+            address=506,
+            space="input",
+            type="i16",
+            text="L+ in force, trim included",
+            block="status",
+            unit="usteps",
+        ),
+        Point(
+            name="reversal_minus_usteps",
+            address=507,
+            space="input",
+            type="i16",
+            text="L- in force, trim included",
+            block="status",
+            unit="usteps",
+        ),
+        Point(
+            name="overshoot_actual_um",
+            address=508,
+            space="input",
+            type="i32",
+            text="Overshoot in force: Ks * (Nr - 1) / 2",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="slope_error_ppm",
+            address=510,
+            space="input",
+            type="i32",
+            text="Residual error of the pitch",
+            block="status",
+            words=2,
+            unit="ppm",
+        ),
+        Point(
+            name="overshoot_error_um",
+            address=512,
+            space="input",
+            type="i32",
+            text="Residual error of the overshoot",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="edges_per_1000_drum_revs",
+            address=514,
+            space="input",
+            type="u32",
+            text="Used encoder edges per 1000 drum revolutions, rounded",
+            block="status",
+            words=2,
+            unit="edges",
+        ),
+        Point(
+            name="dwell_plus_edges",
+            address=516,
+            space="input",
+            type="u32",
+            text="Dwell at the plus side",
+            block="status",
+            words=2,
+            unit="edges",
+        ),
+        Point(
+            name="dwell_minus_edges",
+            address=518,
+            space="input",
+            type="u32",
+            text="Dwell at the minus side",
+            block="status",
+            words=2,
+            unit="edges",
+        ),
+        Point(
+            name="bench_argument",
+            address=61440,
+            space="holding",
+            type="i32",
+            text="Argument of bench_command; may stand in the same request",
+            block="bench",
+            words=2,
+            min=-10000000,
+            max=10000000,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_command",
+            address=61442,
+            space="holding",
+            type="u16",
+            text="Writing a code runs it",
+            block="bench",
+            min=0,
+            max=9,
+            default=0,
+            writable=True,
+            command=True,
+            enum=BenchCommand,
+        ),
+        Point(
+            name="bench_drum_speed_millirpm",
+            address=61443,
+            space="holding",
+            type="i32",
+            text="Drum speed asked for; writing it ends a profile",
+            block="bench",
+            words=2,
+            min=-3000000,
+            max=3000000,
+            default=0,
+            unit="millirpm",
+            writable=True,
+        ),
+        Point(
+            name="bench_drum_acceleration_millirpm_per_s",
+            address=61445,
+            space="holding",
+            type="u32",
+            text="How fast the drum reaches it",
+            block="bench",
+            words=2,
+            min=1,
+            max=100000000,
+            default=200000,
+            unit="millirpm/s",
+            writable=True,
+        ),
+        Point(
+            name="bench_side_load_mm_per_s2",
+            address=61447,
+            space="holding",
+            type="i32",
+            text="Side load on the carriage, as acceleration",
+            block="bench",
+            words=2,
+            min=-1000000,
+            max=1000000,
+            default=0,
+            unit="mm/s2",
+            writable=True,
+        ),
+        Point(
+            name="bench_stall",
+            address=61449,
+            space="holding",
+            type="u16",
+            text="1 holds the carriage where it is",
+            block="bench",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_bounce_ms",
+            address=61450,
+            space="holding",
+            type="u16",
+            text="Bounce of the limit switches",
+            block="bench",
+            min=0,
+            max=100,
+            default=3,
+            unit="ms",
+            writable=True,
+        ),
+        Point(
+            name="bench_switch_plus_fault",
+            address=61451,
+            space="holding",
+            type="u16",
+            text="Fault of the plus limit switch",
+            block="bench",
+            min=0,
+            max=5,
+            default=0,
+            writable=True,
+            enum=SwitchFault,
+        ),
+        Point(
+            name="bench_switch_minus_fault",
+            address=61452,
+            space="holding",
+            type="u16",
+            text="Fault of the minus limit switch",
+            block="bench",
+            min=0,
+            max=5,
+            default=0,
+            writable=True,
+            enum=SwitchFault,
+        ),
+        Point(
+            name="bench_overtravel_plus",
+            address=61453,
+            space="holding",
+            type="u16",
+            text="1 actuates the plus overtravel switch",
+            block="bench",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_overtravel_minus",
+            address=61454,
+            space="holding",
+            type="u16",
+            text="1 actuates the minus overtravel switch",
+            block="bench",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_direction_reversed",
+            address=61455,
+            space="holding",
+            type="u16",
+            text="1 swaps the stepper's direction wire",
+            block="bench",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_trigger_position_um",
+            address=61456,
+            space="holding",
+            type="i32",
+            text="Armed fault: real carriage position that releases it",
+            block="bench",
+            words=2,
+            min=-500000,
+            max=500000,
+            default=0,
+            unit="um",
+            writable=True,
+        ),
+        Point(
+            name="bench_trigger_direction",
+            address=61458,
+            space="holding",
+            type="i16",
+            text="Armed fault: only when passing in this direction (0: either)",
+            block="bench",
+            min=-1,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_trigger_argument",
+            address=61459,
+            space="holding",
+            type="i32",
+            text="Armed fault: its argument",
+            block="bench",
+            words=2,
+            min=-10000000,
+            max=10000000,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_trigger_fault",
+            address=61461,
+            space="holding",
+            type="u16",
+            text="Writing it arms the fault; reads 0 once released",
+            block="bench",
+            min=0,
+            max=3,
+            default=0,
+            writable=True,
+            enum=TriggerFault,
+        ),
+        Point(
+            name="bench_result",
+            address=61469,
+            space="holding",
+            type="u16",
+            text="0: the last bench command or armed fault was accepted; else the POSIX error number why not",
+            block="bench",
+        ),
+        Point(
+            name="bench_carriage_um",
+            address=61470,
+            space="holding",
+            type="i32",
+            text="Real carriage position",
+            block="bench",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="bench_carriage_mm_per_s",
+            address=61472,
+            space="holding",
+            type="i32",
+            text="Real carriage velocity",
+            block="bench",
+            words=2,
+            unit="mm/s",
+        ),
+        Point(
+            name="bench_commanded_usteps",
+            address=61474,
+            space="holding",
+            type="i32",
+            text="Net step pulses received by the stepper",
+            block="bench",
+            words=2,
+            unit="usteps",
+        ),
+        Point(
+            name="bench_slipped_usteps",
+            address=61476,
+            space="holding",
+            type="i32",
+            text="Microsteps lost by the stepper, net",
+            block="bench",
+            words=2,
+            unit="usteps",
+        ),
+        Point(
+            name="bench_transitions",
+            address=61478,
+            space="holding",
+            type="i64",
+            text="Net A/B transitions of the encoder shaft",
+            block="bench",
+            words=4,
+        ),
+        Point(
+            name="bench_drum_actual_millirpm",
+            address=61482,
+            space="holding",
+            type="i32",
+            text="Real drum speed",
+            block="bench",
+            words=2,
+            unit="millirpm",
+        ),
+        Point(
+            name="bench_profile_points",
+            address=61484,
+            space="holding",
+            type="u16",
+            text="Points of the profile in memory",
+            block="bench",
+        ),
+        Point(
+            name="bench_profile_running",
+            address=61485,
+            space="holding",
+            type="u16",
+            text="1 while the profile is played",
+            block="bench",
+        ),
+        Point(
+            name="bench_time_ms",
+            address=61486,
+            space="holding",
+            type="u32",
+            text="Plant time",
+            block="bench",
+            words=2,
+            unit="ms",
+        ),
+        Point(
+            name="bench_profile",
+            address=61500,
+            space="holding",
+            type="i32",
+            text="Window of 30 profile points: time in ms, drum speed in millirpm, alternating",
+            block="bench",
+            words=2,
+            count=60,
+            min=-3000000,
+            max=100000000,
+            default=0,
+            writable=True,
+        ),
+    )
+}

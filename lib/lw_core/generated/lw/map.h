@@ -1,0 +1,994 @@
+/*
+ * The Modbus map: enumerations, structs, addresses, limits and defaults.
+ * Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
+ * Do not edit.
+ */
+#ifndef LW_MAP_H
+#define LW_MAP_H
+
+#include <stdint.h>
+
+#include "lw/point.h"
+
+/* Product identification, and what the register self_test reads. */
+#define LW_PRODUCT_VENDOR "levelwind"
+#define LW_PRODUCT_CODE   "LW1"
+#define LW_PRODUCT_NAME   "level wind controller"
+#define LW_PRODUCT_URL    "https://github.com/levelwind/levelwind"
+#define LW_VERSION_MAJOR  0
+#define LW_VERSION_MINOR  1
+#define LW_VERSION_PATCH  0
+#define LW_VERSION_STRING "0.1.0"
+#define LW_MAP_VERSION    1
+#define LW_SELF_TEST      0x12345678u
+
+/** What the controller is doing */
+enum lw_state {
+	/** Position unknown. Give the command index */
+	LW_STATE_UNINDEXED = 0,
+	/** Indexing: moving off a limit switch that was active at the start */
+	LW_STATE_BACKING_OFF = 1,
+	/** Indexing: moving toward the indexing switch */
+	LW_STATE_SEEKING = 2,
+	/** Indexing: switch found, turning round at the reversal point */
+	LW_STATE_INDEX_REVERSAL = 3,
+	/** Indexing: sweeping back to check the other switch */
+	LW_STATE_SPAN_CHECK = 4,
+	/** Indexing: coming to rest at the parking place */
+	LW_STATE_PARKING = 5,
+	/**
+	 * Indexed and at rest. Follows the drum as soon as the mode is track and the drum is at
+	 * rest
+	 */
+	LW_STATE_READY = 6,
+	/** Following the drum */
+	LW_STATE_TRACKING = 7,
+	/** Moving to the centre */
+	LW_STATE_CENTRING = 8,
+	/** Held at the centre, the drum is not followed */
+	LW_STATE_CENTRED = 9,
+	/** Moving by hand */
+	LW_STATE_JOGGING = 10,
+	/** Stepper without current, position unknown */
+	LW_STATE_OFF = 11,
+	/** Stopped by a fault, see the register fault */
+	LW_STATE_FAULT = 12,
+};
+
+/** What the carriage shall do */
+enum lw_mode {
+	/** Stepper without current. The index is lost */
+	LW_MODE_OFF = 0,
+	/** Follow the drum once indexed */
+	LW_MODE_TRACK = 1,
+	/** Hold the carriage at the centre, for pulling rope out */
+	LW_MODE_CENTRE = 2,
+};
+
+/** Why the controller stopped */
+enum lw_fault {
+	/** No fault */
+	LW_FAULT_NONE = 0,
+	/**
+	 * Indexing: no limit switch within the travel. Is the carriage free, is the stepper
+	 * powered?
+	 */
+	LW_FAULT_INDEX_NO_SWITCH = 1,
+	/**
+	 * Indexing: the opposite switch came first. Check the stepper direction and which switch is
+	 * which
+	 */
+	LW_FAULT_INDEX_WRONG_SWITCH = 2,
+	/**
+	 * Indexing: the other switch is not where it was calibrated. Check both switches, then
+	 * their calibrated positions
+	 */
+	LW_FAULT_INDEX_SPAN = 3,
+	/** Both limit switches are active at once. Check the switch wiring */
+	LW_FAULT_BOTH_SWITCHES_ACTIVE = 4,
+	/**
+	 * The limit switch did not release although the carriage moved away. Stuck switch, or the
+	 * stepper does not move
+	 */
+	LW_FAULT_BACK_OFF_NO_RELEASE = 5,
+	/**
+	 * Plus limit switch: contacts contradict each other or both stay open. Broken wire or short
+	 */
+	LW_FAULT_WIRING_PLUS = 6,
+	/**
+	 * Minus limit switch: contacts contradict each other or both stay open. Broken wire or
+	 * short
+	 */
+	LW_FAULT_WIRING_MINUS = 7,
+	/** Plus overtravel switch: stepper disabled, only motion toward minus is allowed */
+	LW_FAULT_OVERTRAVEL_PLUS = 8,
+	/** Minus overtravel switch: stepper disabled, only motion toward plus is allowed */
+	LW_FAULT_OVERTRAVEL_MINUS = 9,
+	/** The drum turned faster than overspeed_trip_edges_per_s, the stepper cannot follow */
+	LW_FAULT_OVERSPEED = 10,
+	/** More losses of synchronization in one launch than los_recoveries_max */
+	LW_FAULT_LOS_LIMIT = 11,
+};
+
+/** Momentary commands, by the register command or by the coil of the same name */
+enum lw_command {
+	/** Nothing */
+	LW_COMMAND_NONE = 0,
+	/** Find the position (homing). The drum must be at rest */
+	LW_COMMAND_INDEX = 1,
+	/** Stop every motion now. Always accepted */
+	LW_COMMAND_STOP = 2,
+	/** Acknowledge a fault whose cause is gone; indexing is needed afterwards */
+	LW_COMMAND_CLEAR_FAULT = 3,
+	/** Check the staged parameters as a whole and make them active */
+	LW_COMMAND_APPLY = 4,
+	/** Drop the staged parameters: staged becomes active again */
+	LW_COMMAND_REVERT = 5,
+	/** Write the active parameters to non-volatile storage */
+	LW_COMMAND_SAVE = 6,
+	/** Stage the factory values of everything but the line settings */
+	LW_COMMAND_FACTORY_MOTION = 7,
+	/** Stage the factory line settings */
+	LW_COMMAND_FACTORY_LINE = 8,
+	/** Stage all factory values */
+	LW_COMMAND_FACTORY_ALL = 9,
+};
+
+/** How the last command ended */
+enum lw_result {
+	/** No command since power-up */
+	LW_RESULT_NONE = 0,
+	/** Accepted, still running */
+	LW_RESULT_IN_PROGRESS = 1,
+	/** Done */
+	LW_RESULT_DONE = 2,
+	/** Refused, nothing changed; see command_reason */
+	LW_RESULT_REFUSED = 3,
+	/** Started but did not succeed; see command_reason and fault */
+	LW_RESULT_FAILED = 4,
+};
+
+/** Why a request, a command or a parameter set was refused */
+enum lw_reason {
+	/** Not refused */
+	LW_REASON_NONE = 0,
+	/** This function code is not supported */
+	LW_REASON_UNKNOWN_FUNCTION = 1,
+	/** No register or bit at this address */
+	LW_REASON_UNKNOWN_ADDRESS = 2,
+	/** This register can only be read */
+	LW_REASON_NOT_WRITABLE = 3,
+	/** A value of two registers must be written whole, in one request */
+	LW_REASON_HALF_OF_PAIR = 4,
+	/** The value is outside the limits of this register */
+	LW_REASON_OUT_OF_RANGE = 5,
+	/** The count is zero or too large for this function */
+	LW_REASON_BAD_COUNT = 6,
+	/** The request is shorter or longer than its function and count say */
+	LW_REASON_BAD_LENGTH = 7,
+	/** A coil is written with 0x0000 or 0xFF00 */
+	LW_REASON_BAD_COIL_VALUE = 8,
+	/** One request can carry one command only */
+	LW_REASON_SEVERAL_COMMANDS = 9,
+	/** Refused while tracking: stop, or set the mode to centre with the drum at rest */
+	LW_REASON_BUSY_TRACKING = 10,
+	/** Refused while the carriage moves by itself: wait or give stop */
+	LW_REASON_BUSY_MOVING = 11,
+	/** Refused while parameters are being saved: try again */
+	LW_REASON_BUSY_SAVING = 12,
+	/** The drum must be at rest for this */
+	LW_REASON_DRUM_MOVING = 13,
+	/** Stopped by a fault: remove the cause, then clear_fault or index */
+	LW_REASON_IN_FAULT = 14,
+	/** The cause of the fault is still there */
+	LW_REASON_CAUSE_PRESENT = 15,
+	/** Refused in mode off: set the mode to track or centre first */
+	LW_REASON_MODE_OFF = 16,
+	/** Only motion away from the active overtravel switch is allowed */
+	LW_REASON_OVERTRAVEL = 17,
+	/** The non-volatile storage reported an error */
+	LW_REASON_STORAGE_FAILED = 18,
+	/** Ended by stop, mode off or a lost input before it was complete */
+	LW_REASON_STOPPED = 19,
+	/** Ended by a fault, see the register fault */
+	LW_REASON_FAULTED = 20,
+	/** This sub-function or object is not supported */
+	LW_REASON_UNDEFINED_SUB_FUNCTION = 21,
+	/**
+	 * The pitch asks for more than one step per encoder edge: finer encoder edges, fewer
+	 * microsteps or a smaller pitch
+	 */
+	LW_REASON_SLOPE_ABOVE_ONE_STEP = 30,
+	/** The pitch asks for less than 1/65536 step per edge */
+	LW_REASON_SLOPE_TOO_SMALL = 31,
+	/**
+	 * No pair (Ka, Nr) meets pitch and overshoot within slope_tolerance_ppm: allow more
+	 * tolerance
+	 */
+	LW_REASON_SLOPE_UNREACHABLE = 32,
+	/** reversal_minus must lie at least 2 microsteps below reversal_plus */
+	LW_REASON_REVERSALS_CROSSED = 33,
+	/** switch_plus must lie inside reversal_plus */
+	LW_REASON_SWITCH_PLUS_OUTSIDE = 34,
+	/** switch_minus must lie inside reversal_minus */
+	LW_REASON_SWITCH_MINUS_OUTSIDE = 35,
+	/** switch_minus must lie below switch_plus by more than twice tolerance plus hysteresis */
+	LW_REASON_SWITCHES_CROSSED = 36,
+	/** The overshoot past reversal_plus reaches beyond flange_plus */
+	LW_REASON_OVERSHOOT_BEYOND_FLANGE_PLUS = 37,
+	/** The overshoot past reversal_minus reaches beyond flange_minus */
+	LW_REASON_OVERSHOOT_BEYOND_FLANGE_MINUS = 38,
+	/** The parking place needs its last reversal (plus overshoot) inside the sweep */
+	LW_REASON_PARK_OUTSIDE = 39,
+	/** centre_position must lie inside the reversal points */
+	LW_REASON_CENTRE_OUTSIDE = 40,
+	/**
+	 * Two ramps of one overshoot each must fit between the switches, less tolerance and
+	 * hysteresis
+	 */
+	LW_REASON_RAMP_DOES_NOT_FIT = 41,
+	/**
+	 * A position is beyond 32767 microsteps: fewer microsteps per revolution or a shorter
+	 * travel
+	 */
+	LW_REASON_POSITION_OVERFLOW = 42,
+	/** travel must be at least the distance between the flanges */
+	LW_REASON_TRAVEL_TOO_SHORT = 43,
+	/** overspeed_warning must not be above overspeed_trip */
+	LW_REASON_OVERSPEED_LIMITS_CROSSED = 44,
+	/** A calibrated switch position plus its tolerance must stay inside the flange */
+	LW_REASON_TOLERANCE_BEYOND_FLANGE = 45,
+	/** The encoder ratio gives less than one edge per drum revolution */
+	LW_REASON_TOO_FEW_EDGES = 46,
+	/**
+	 * At the index rate the carriage would pass the reversal point before the switch is
+	 * debounced
+	 */
+	LW_REASON_DEBOUNCE_TOO_LONG = 47,
+};
+
+/** What runs the core */
+enum lw_host {
+	/** POSIX simulator */
+	LW_HOST_SIMULATOR = 1,
+	/** Zephyr native_sim */
+	LW_HOST_NATIVE_SIM = 2,
+	/** Zephyr in QEMU */
+	LW_HOST_QEMU = 3,
+	/** Zephyr on hardware */
+	LW_HOST_HARDWARE = 4,
+};
+
+/** How a limit switch is wired */
+enum lw_switch_contacts {
+	/** Change-over switch, both contacts wired: no debounce delay, broken wires are found */
+	LW_SWITCH_CONTACTS_NO_NC_PAIR = 0,
+	/** One normally open contact */
+	LW_SWITCH_CONTACTS_SINGLE_NO = 1,
+	/** One normally closed contact */
+	LW_SWITCH_CONTACTS_SINGLE_NC = 2,
+};
+
+/** A side of the drum */
+enum lw_side {
+	/** Plus side */
+	LW_SIDE_PLUS = 0,
+	/** Minus side */
+	LW_SIDE_MINUS = 1,
+};
+
+/** Where indexing ends */
+enum lw_park_at {
+	/** At the far point of the reversal opposite to the indexing switch */
+	LW_PARK_AT_FLANGE = 0,
+	/** At park_position_um */
+	LW_PARK_AT_POSITION = 1,
+};
+
+/** Data bits, parity, stop bits */
+enum lw_line_format {
+	/** 8 data bits, even parity, 1 stop bit (the standard's default) */
+	LW_LINE_FORMAT_8E1 = 0,
+	/** 8 data bits, odd parity, 1 stop bit */
+	LW_LINE_FORMAT_8O1 = 1,
+	/** 8 data bits, no parity, 1 stop bit */
+	LW_LINE_FORMAT_8N1 = 2,
+	/** 8 data bits, no parity, 2 stop bits */
+	LW_LINE_FORMAT_8N2 = 3,
+};
+
+/** Commands of the simulated plant */
+enum lw_bench_command {
+	/** Nothing */
+	LW_BENCH_COMMAND_NONE = 0,
+	/** Forget the drum speed profile */
+	LW_BENCH_COMMAND_PROFILE_CLEAR = 1,
+	/** Append the first bench_argument points of the window bench_profile */
+	LW_BENCH_COMMAND_PROFILE_APPEND = 2,
+	/** Play the profile from its beginning */
+	LW_BENCH_COMMAND_PROFILE_START = 3,
+	/** Restart the controller; the plant goes on */
+	LW_BENCH_COMMAND_POWER_CUT = 4,
+	/** Move the carriage by bench_argument microsteps against the stepper */
+	LW_BENCH_COMMAND_SLIP = 5,
+	/** Swallow the next bench_argument encoder pulses */
+	LW_BENCH_COMMAND_LOSE_PULSES = 6,
+	/** Rock the encoder bench_argument times about the present edge */
+	LW_BENCH_COMMAND_DITHER = 7,
+	/** Change both encoder channels at once bench_argument times */
+	LW_BENCH_COMMAND_ILLEGAL_TRANSITIONS = 8,
+	/** Put the carriage at bench_argument micrometres by hand (stepper off) */
+	LW_BENCH_COMMAND_PLACE_CARRIAGE = 9,
+};
+
+/** Faults of a simulated limit switch */
+enum lw_switch_fault {
+	/** Works */
+	LW_SWITCH_FAULT_NONE = 0,
+	/** Never actuates */
+	LW_SWITCH_FAULT_STUCK_RELEASED = 1,
+	/** Always actuated */
+	LW_SWITCH_FAULT_STUCK_ACTUATED = 2,
+	/** NO contact never seen closed */
+	LW_SWITCH_FAULT_NO_WIRE_BROKEN = 3,
+	/** NC contact never seen closed */
+	LW_SWITCH_FAULT_NC_WIRE_BROKEN = 4,
+	/** Both contacts seen closed */
+	LW_SWITCH_FAULT_SHORTED = 5,
+};
+
+/** Faults that an armed position can release */
+enum lw_trigger_fault {
+	/** Not armed */
+	LW_TRIGGER_FAULT_NONE = 0,
+	/** Hold the carriage for bench_trigger_argument milliseconds */
+	LW_TRIGGER_FAULT_STALL = 1,
+	/** Move the carriage by bench_trigger_argument microsteps */
+	LW_TRIGGER_FAULT_SLIP = 2,
+	/** Swallow bench_trigger_argument encoder pulses */
+	LW_TRIGGER_FAULT_LOSE_PULSES = 3,
+};
+
+/** Discrete inputs, and bit numbers of lw_status.flags */
+enum lw_flag {
+	/** The position is known */
+	LW_FLAG_INDEXED = 0,
+	/** The carriage follows the drum */
+	LW_FLAG_TRACKING = 1,
+	/** A launch may begin; see launch_inhibit if not */
+	LW_FLAG_LAUNCH_PERMIT = 2,
+	/** The carriage moves by itself (indexing, centring, jogging) */
+	LW_FLAG_MOVING = 3,
+	/** The drum is slower than rest_edges_per_s for rest_time_ms */
+	LW_FLAG_DRUM_AT_REST = 4,
+	/** Stopped by a fault */
+	LW_FLAG_FAULTED = 5,
+	/** Any loss of synchronization since the last indexing: the rope may be laid wrong */
+	LW_FLAG_LOS = 6,
+	/** LOS type 1+: reversal at plus entered, its switch did not trigger on the way */
+	LW_FLAG_LOS1_PLUS = 7,
+	/** LOS type 1-: reversal at minus entered, its switch did not trigger on the way */
+	LW_FLAG_LOS1_MINUS = 8,
+	/** LOS type 2+: plus switch triggered outside its tolerance */
+	LW_FLAG_LOS2_PLUS = 9,
+	/** LOS type 2-: minus switch triggered outside its tolerance */
+	LW_FLAG_LOS2_MINUS = 10,
+	/** Plus limit switch actuated (debounced) */
+	LW_FLAG_SWITCH_PLUS = 11,
+	/** Minus limit switch actuated (debounced) */
+	LW_FLAG_SWITCH_MINUS = 12,
+	/** Plus limit switch wiring fault */
+	LW_FLAG_WIRING_PLUS = 13,
+	/** Minus limit switch wiring fault */
+	LW_FLAG_WIRING_MINUS = 14,
+	/** Plus overtravel switch actuated */
+	LW_FLAG_OVERTRAVEL_PLUS = 15,
+	/** Minus overtravel switch actuated */
+	LW_FLAG_OVERTRAVEL_MINUS = 16,
+	/** The drum is faster than overspeed_warning_edges_per_s */
+	LW_FLAG_OVERSPEED_WARNING = 17,
+	/** The drum was faster than overspeed_trip_edges_per_s (sticky until clear_fault) */
+	LW_FLAG_OVERSPEED_TRIP = 18,
+	/** No valid request for master_timeout_ms */
+	LW_FLAG_MASTER_LOST = 19,
+	/** Staged parameters differ from the active ones: APPLY or REVERT */
+	LW_FLAG_STAGED = 20,
+	/** Active parameters differ from the stored ones: SAVE to keep them */
+	LW_FLAG_DIRTY = 21,
+	/** No usable stored set was found at power-up: factory values are active */
+	LW_FLAG_DEFAULTS_LOADED = 22,
+	/** A trim waits for the carriage to be in the sweep */
+	LW_FLAG_TRIM_PENDING = 23,
+	/** A re-index correction waits for the end of the reversal */
+	LW_FLAG_CORRECTION_PENDING = 24,
+	/** The stepper has current */
+	LW_FLAG_STEPPER_ENABLED = 25,
+	/** The active line settings differ from those in use: SAVE and restart */
+	LW_FLAG_RESTART_NEEDED = 26,
+};
+
+/** Bit numbers of lw_status.launch_inhibit */
+enum lw_launch_inhibit_bit {
+	/** The state is not tracking */
+	LW_LAUNCH_INHIBIT_NOT_TRACKING = 0,
+	/** Synchronization was lost: index again */
+	LW_LAUNCH_INHIBIT_LOS = 1,
+	/** A fault stands */
+	LW_LAUNCH_INHIBIT_FAULT = 2,
+	/** A limit switch has a wiring fault */
+	LW_LAUNCH_INHIBIT_WIRING = 3,
+	/** An overtravel switch is actuated */
+	LW_LAUNCH_INHIBIT_OVERTRAVEL = 4,
+	/** The drum tripped the overspeed limit */
+	LW_LAUNCH_INHIBIT_OVERSPEED = 5,
+	/** The Modbus master is silent */
+	LW_LAUNCH_INHIBIT_MASTER_LOST = 6,
+	/** A re-index correction is pending */
+	LW_LAUNCH_INHIBIT_CORRECTION = 7,
+};
+
+/* Protocol addresses. Discrete inputs: enum lw_flag is the address. */
+
+/* Coils. */
+#define LW_ADDRESS_INDEX       0
+#define LW_ADDRESS_STOP        1
+#define LW_ADDRESS_CLEAR_FAULT 2
+#define LW_ADDRESS_APPLY       3
+#define LW_ADDRESS_REVERT      4
+#define LW_ADDRESS_SAVE        5
+#define LW_ADDRESS_JOG_PLUS    6
+#define LW_ADDRESS_JOG_MINUS   7
+
+/* Block setpoints: holding registers. */
+#define LW_ADDRESS_COMMAND       0
+#define LW_ADDRESS_MODE          1
+#define LW_ADDRESS_JOG           2
+#define LW_ADDRESS_TRIM_PLUS_UM  3
+#define LW_ADDRESS_TRIM_MINUS_UM 4
+
+/* Block parameters: holding registers. */
+#define LW_ADDRESS_ENCODER_PULSES_PER_REV        100
+#define LW_ADDRESS_ENCODER_EDGES_PER_PULSE       101
+#define LW_ADDRESS_ENCODER_RATIO_NUMERATOR       102
+#define LW_ADDRESS_ENCODER_RATIO_DENOMINATOR     103
+#define LW_ADDRESS_ENCODER_INVERT_A              104
+#define LW_ADDRESS_ENCODER_INVERT_B              105
+#define LW_ADDRESS_DRUM_DIRECTION_INVERT         106
+#define LW_ADDRESS_ROPE_PER_DRUM_REV_UM          107
+#define LW_ADDRESS_SCREW_LEAD_UM                 110
+#define LW_ADDRESS_MICROSTEPS_PER_REV            112
+#define LW_ADDRESS_CARRIAGE_DIRECTION_INVERT     113
+#define LW_ADDRESS_PITCH_UM                      114
+#define LW_ADDRESS_OVERSHOOT_UM                  116
+#define LW_ADDRESS_SLOPE_TOLERANCE_PPM           118
+#define LW_ADDRESS_REVERSAL_PLUS_UM              120
+#define LW_ADDRESS_REVERSAL_MINUS_UM             122
+#define LW_ADDRESS_FLANGE_PLUS_UM                124
+#define LW_ADDRESS_FLANGE_MINUS_UM               126
+#define LW_ADDRESS_SWITCH_PLUS_UM                128
+#define LW_ADDRESS_SWITCH_MINUS_UM               130
+#define LW_ADDRESS_SWITCH_TOLERANCE_UM           132
+#define LW_ADDRESS_SWITCH_HYSTERESIS_UM          133
+#define LW_ADDRESS_SWITCH_CONTACTS               134
+#define LW_ADDRESS_SWITCH_TRANSIT_MS             135
+#define LW_ADDRESS_SWITCH_DEBOUNCE_MS            136
+#define LW_ADDRESS_TRAVEL_UM                     137
+#define LW_ADDRESS_INDEX_SWITCH                  140
+#define LW_ADDRESS_INDEX_RATE_EDGES_PER_S        141
+#define LW_ADDRESS_PARK_AT                       142
+#define LW_ADDRESS_PARK_POSITION_UM              143
+#define LW_ADDRESS_SPAN_TOLERANCE_UM             145
+#define LW_ADDRESS_HANDOVER_DIRECTION            146
+#define LW_ADDRESS_REST_EDGES_PER_S              147
+#define LW_ADDRESS_REST_TIME_MS                  148
+#define LW_ADDRESS_CENTRE_POSITION_UM            149
+#define LW_ADDRESS_JOG_RATE_EDGES_PER_S          151
+#define LW_ADDRESS_JOG_HOLD_MS                   152
+#define LW_ADDRESS_LOS_RECOVERIES_MAX            160
+#define LW_ADDRESS_OVERSPEED_WARNING_EDGES_PER_S 161
+#define LW_ADDRESS_OVERSPEED_TRIP_EDGES_PER_S    163
+#define LW_ADDRESS_MASTER_TIMEOUT_MS             165
+#define LW_ADDRESS_DWELL_PLUS_MILLIREV           166
+#define LW_ADDRESS_DWELL_MINUS_MILLIREV          167
+#define LW_ADDRESS_EXPERT_MODE                   170
+#define LW_ADDRESS_RAW_KA                        171
+#define LW_ADDRESS_RAW_NR                        172
+#define LW_ADDRESS_RAW_REVERSAL_PLUS_USTEPS      173
+#define LW_ADDRESS_RAW_REVERSAL_MINUS_USTEPS     174
+#define LW_ADDRESS_UNIT_ID                       180
+#define LW_ADDRESS_BAUD_RATE                     181
+#define LW_ADDRESS_LINE_FORMAT                   183
+
+/* Added to an address of block parameters: the active set, as input registers. */
+#define LW_MAP_ACTIVE_ADDRESS_OFFSET 1000
+
+/* Added to an address of block parameters: the stored set, as input registers. */
+#define LW_MAP_STORED_ADDRESS_OFFSET 2000
+
+/* Block status: input registers. */
+#define LW_ADDRESS_SELF_TEST                0
+#define LW_ADDRESS_MAP_VERSION              2
+#define LW_ADDRESS_VERSION_MAJOR            3
+#define LW_ADDRESS_VERSION_MINOR            4
+#define LW_ADDRESS_VERSION_PATCH            5
+#define LW_ADDRESS_HOST                     6
+#define LW_ADDRESS_STATE                    100
+#define LW_ADDRESS_ACTIVE_MODE              101
+#define LW_ADDRESS_FAULT                    102
+#define LW_ADDRESS_FLAGS                    103
+#define LW_ADDRESS_LAUNCH_INHIBIT           105
+#define LW_ADDRESS_POSITION_UM              106
+#define LW_ADDRESS_POSITION_USTEPS          108
+#define LW_ADDRESS_M                        109
+#define LW_ADDRESS_U                        111
+#define LW_ADDRESS_DRUM_SPEED_EDGES_PER_S   113
+#define LW_ADDRESS_ROPE_SPEED_MM_PER_S      115
+#define LW_ADDRESS_ROPE_MM                  117
+#define LW_ADDRESS_NET_EDGES                119
+#define LW_ADDRESS_PATTERN_EDGES            123
+#define LW_ADDRESS_UPTIME_MS                127
+#define LW_ADDRESS_LOS_RECOVERIES           129
+#define LW_ADDRESS_SPAN_ERROR_UM            130
+#define LW_ADDRESS_LOS1_PLUS_COUNT          200
+#define LW_ADDRESS_LOS1_PLUS_POSITION_UM    201
+#define LW_ADDRESS_LOS1_PLUS_TIME_MS        203
+#define LW_ADDRESS_LOS1_MINUS_COUNT         210
+#define LW_ADDRESS_LOS1_MINUS_POSITION_UM   211
+#define LW_ADDRESS_LOS1_MINUS_TIME_MS       213
+#define LW_ADDRESS_LOS2_PLUS_COUNT          220
+#define LW_ADDRESS_LOS2_PLUS_POSITION_UM    221
+#define LW_ADDRESS_LOS2_PLUS_TIME_MS        223
+#define LW_ADDRESS_LOS2_MINUS_COUNT         230
+#define LW_ADDRESS_LOS2_MINUS_POSITION_UM   231
+#define LW_ADDRESS_LOS2_MINUS_TIME_MS       233
+#define LW_ADDRESS_ILLEGAL_TRANSITIONS      300
+#define LW_ADDRESS_SWITCH_PLUS_TRIGGERS     302
+#define LW_ADDRESS_SWITCH_MINUS_TRIGGERS    304
+#define LW_ADDRESS_STEPS                    306
+#define LW_ADDRESS_REQUESTS                 308
+#define LW_ADDRESS_CRC_ERRORS               310
+#define LW_ADDRESS_EXCEPTIONS               312
+#define LW_ADDRESS_COMMAND_SEQUENCE         400
+#define LW_ADDRESS_COMMAND_CODE             401
+#define LW_ADDRESS_COMMAND_RESULT           402
+#define LW_ADDRESS_COMMAND_REASON           403
+#define LW_ADDRESS_COMMAND_ADDRESS          404
+#define LW_ADDRESS_COMMAND_VALUE            405
+#define LW_ADDRESS_COMMAND_LIMIT            407
+#define LW_ADDRESS_LAST_ERROR_REASON        410
+#define LW_ADDRESS_LAST_ERROR_FUNCTION      411
+#define LW_ADDRESS_LAST_ERROR_EXCEPTION     412
+#define LW_ADDRESS_LAST_ERROR_ADDRESS       413
+#define LW_ADDRESS_LAST_ERROR_VALUE         414
+#define LW_ADDRESS_LAST_ERROR_LIMIT         416
+#define LW_ADDRESS_KA                       500
+#define LW_ADDRESS_NR                       502
+#define LW_ADDRESS_KS                       504
+#define LW_ADDRESS_REVERSAL_PLUS_USTEPS     506
+#define LW_ADDRESS_REVERSAL_MINUS_USTEPS    507
+#define LW_ADDRESS_OVERSHOOT_ACTUAL_UM      508
+#define LW_ADDRESS_SLOPE_ERROR_PPM          510
+#define LW_ADDRESS_OVERSHOOT_ERROR_UM       512
+#define LW_ADDRESS_EDGES_PER_1000_DRUM_REVS 514
+#define LW_ADDRESS_DWELL_PLUS_EDGES         516
+#define LW_ADDRESS_DWELL_MINUS_EDGES        518
+
+/* Block bench: holding registers. */
+#define LW_ADDRESS_BENCH_ARGUMENT                         61440
+#define LW_ADDRESS_BENCH_COMMAND                          61442
+#define LW_ADDRESS_BENCH_DRUM_SPEED_MILLIRPM              61443
+#define LW_ADDRESS_BENCH_DRUM_ACCELERATION_MILLIRPM_PER_S 61445
+#define LW_ADDRESS_BENCH_SIDE_LOAD_MM_PER_S2              61447
+#define LW_ADDRESS_BENCH_STALL                            61449
+#define LW_ADDRESS_BENCH_BOUNCE_MS                        61450
+#define LW_ADDRESS_BENCH_SWITCH_PLUS_FAULT                61451
+#define LW_ADDRESS_BENCH_SWITCH_MINUS_FAULT               61452
+#define LW_ADDRESS_BENCH_OVERTRAVEL_PLUS                  61453
+#define LW_ADDRESS_BENCH_OVERTRAVEL_MINUS                 61454
+#define LW_ADDRESS_BENCH_DIRECTION_REVERSED               61455
+#define LW_ADDRESS_BENCH_TRIGGER_POSITION_UM              61456
+#define LW_ADDRESS_BENCH_TRIGGER_DIRECTION                61458
+#define LW_ADDRESS_BENCH_TRIGGER_ARGUMENT                 61459
+#define LW_ADDRESS_BENCH_TRIGGER_FAULT                    61461
+#define LW_ADDRESS_BENCH_RESULT                           61469
+#define LW_ADDRESS_BENCH_CARRIAGE_UM                      61470
+#define LW_ADDRESS_BENCH_CARRIAGE_MM_PER_S                61472
+#define LW_ADDRESS_BENCH_COMMANDED_USTEPS                 61474
+#define LW_ADDRESS_BENCH_SLIPPED_USTEPS                   61476
+#define LW_ADDRESS_BENCH_TRANSITIONS                      61478
+#define LW_ADDRESS_BENCH_DRUM_ACTUAL_MILLIRPM             61482
+#define LW_ADDRESS_BENCH_PROFILE_POINTS                   61484
+#define LW_ADDRESS_BENCH_PROFILE_RUNNING                  61485
+#define LW_ADDRESS_BENCH_TIME_MS                          61486
+#define LW_ADDRESS_BENCH_PROFILE                          61500
+
+/**
+ * Commands and set-points, effective at once, never stored. One member for each point, in the
+ * memory type of lw/point.h.
+ */
+struct lw_setpoints {
+	/** Writing a code runs the command; reads the last one (enum lw_command) */
+	int32_t command;
+	/** Requested mode, taken over when the drum is at rest (off: at once) (enum lw_mode) */
+	int32_t mode;
+	/** Held jog: -1, 0 or +1; write again within jog_hold_ms or it stops */
+	int32_t jog;
+	/** Live shift of reversal_plus, applied in the sweep only [um] */
+	int32_t trim_plus_um;
+	/** Live shift of reversal_minus, applied in the sweep only [um] */
+	int32_t trim_minus_um;
+};
+
+/**
+ * Parameters (staged). APPLY makes them active, SAVE stores the active set. One member for each
+ * point, in the memory type of lw/point.h.
+ */
+struct lw_params {
+	/** Encoder pulses per revolution of its shaft [pulses] */
+	int32_t encoder_pulses_per_rev;
+	/** Edges used per pulse [edges] */
+	int32_t encoder_edges_per_pulse;
+	/** Encoder revolutions per drum revolution, numerator */
+	int32_t encoder_ratio_numerator;
+	/** Encoder revolutions per drum revolution, denominator */
+	int32_t encoder_ratio_denominator;
+	/** 1 inverts encoder channel A */
+	int32_t encoder_invert_a;
+	/** 1 inverts encoder channel B */
+	int32_t encoder_invert_b;
+	/** 1 swaps the sign of drum motion; hauling rope in must count positive */
+	int32_t drum_direction_invert;
+	/** Rope hauled in per drum revolution, for the odometer [um] */
+	uint32_t rope_per_drum_rev_um;
+	/** Carriage travel per screw revolution [um] */
+	uint32_t screw_lead_um;
+	/** Microsteps per stepper revolution, as set at the stepper driver [usteps] */
+	int32_t microsteps_per_rev;
+	/** 1 inverts the stepper's direction output */
+	int32_t carriage_direction_invert;
+	/** Carriage travel per drum revolution [um] */
+	uint32_t pitch_um;
+	/** How far a reversal runs past the reversal point [um] */
+	uint32_t overshoot_um;
+	/** How far the pitch may be off to meet the overshoot [ppm] */
+	int32_t slope_tolerance_ppm;
+	/** Where the reversal at the plus side begins [um] */
+	int32_t reversal_plus_um;
+	/** Where the reversal at the minus side begins [um] */
+	int32_t reversal_minus_um;
+	/** Farthest place on the plus side that the carriage may be commanded to [um] */
+	int32_t flange_plus_um;
+	/** Farthest place on the minus side that the carriage may be commanded to [um] */
+	int32_t flange_minus_um;
+	/** Calibrated trigger position of the plus limit switch [um] */
+	int32_t switch_plus_um;
+	/** Calibrated trigger position of the minus limit switch [um] */
+	int32_t switch_minus_um;
+	/** A trigger further than this from its calibrated position is a LOS of type 2 [um] */
+	int32_t switch_tolerance_um;
+	/** Within this distance inward of its trigger point a switch has surely released [um] */
+	int32_t switch_hysteresis_um;
+	/** How the limit switches are wired (enum lw_switch_contacts) */
+	int32_t switch_contacts;
+	/** Both contacts open longer than this is a wiring fault [ms] */
+	int32_t switch_transit_ms;
+	/** Debounce time of a single contact [ms] */
+	int32_t switch_debounce_ms;
+	/** Carriage travel between the mechanical end stops [um] */
+	uint32_t travel_um;
+	/** Which limit switch is the indexing switch (enum lw_side) */
+	int32_t index_switch;
+	/** Rate of the simulated edges for indexing and centring [edges/s] */
+	int32_t index_rate_edges_per_s;
+	/** Where indexing ends (enum lw_park_at) */
+	int32_t park_at;
+	/** Parking place if park_at is position [um] */
+	int32_t park_position_um;
+	/** Indexing: how far the other switch may be from its calibrated position [um] */
+	int32_t span_tolerance_um;
+	/**
+	 * Carriage direction on hand-over from a parking position or the centre, drum hauling in
+	 * (enum lw_side)
+	 */
+	int32_t handover_direction;
+	/** The drum counts as at rest below this rate [edges/s] */
+	int32_t rest_edges_per_s;
+	/** The drum counts as at rest after this time below rest_edges_per_s [ms] */
+	int32_t rest_time_ms;
+	/** Where mode centre holds the carriage [um] */
+	int32_t centre_position_um;
+	/** Rate of the simulated edges for jogging [edges/s] */
+	int32_t jog_rate_edges_per_s;
+	/** A jog stops when it is not written again within this time [ms] */
+	int32_t jog_hold_ms;
+	/** Stop after more LOS recoveries than this in one launch (0: never stop) */
+	int32_t los_recoveries_max;
+	/** Drum speed that sets the flag overspeed_warning [edges/s] */
+	uint32_t overspeed_warning_edges_per_s;
+	/** Drum speed that stops the controller [edges/s] */
+	uint32_t overspeed_trip_edges_per_s;
+	/** Without a valid request for this long the launch permit drops (0: not watched) [ms] */
+	int32_t master_timeout_ms;
+	/** Dwell at the far point of the plus reversal [1/1000 drum rev] */
+	int32_t dwell_plus_millirev;
+	/** Dwell at the far point of the minus reversal [1/1000 drum rev] */
+	int32_t dwell_minus_millirev;
+	/** 1: the four raw_ values replace pitch, overshoot and reversal points */
+	int32_t expert_mode;
+	/** Slope change per edge in a reversal [usteps/65536] */
+	int32_t raw_ka;
+	/** Edges from sweep slope to zero slope; Ks = Ka * Nr [edges] */
+	int32_t raw_nr;
+	/** L+ [usteps] */
+	int32_t raw_reversal_plus_usteps;
+	/** L- [usteps] */
+	int32_t raw_reversal_minus_usteps;
+	/** Modbus unit id, effective after APPLY, SAVE and restart */
+	int32_t unit_id;
+	/** Line speed, effective after APPLY, SAVE and restart [baud] */
+	uint32_t baud_rate;
+	/**
+	 * Data bits, parity, stop bits, effective after APPLY, SAVE and restart (enum
+	 * lw_line_format)
+	 */
+	int32_t line_format;
+};
+
+/**
+ * Identity, live status, LOS records, counters, command results and derived values. One member for
+ * each point, in the memory type of lw/point.h.
+ */
+struct lw_status {
+	/** Always 0x12345678: the master's word order is right when it reads so */
+	uint32_t self_test;
+	/** Version of this map */
+	int32_t map_version;
+	/** Firmware version, major */
+	int32_t version_major;
+	/** Firmware version, minor */
+	int32_t version_minor;
+	/** Firmware version, patch */
+	int32_t version_patch;
+	/** What runs the core (enum lw_host) */
+	int32_t host;
+	/** What the controller is doing (enum lw_state) */
+	int32_t state;
+	/** Mode in force (the requested one waits for the drum to rest) (enum lw_mode) */
+	int32_t active_mode;
+	/** Why the controller stopped (enum lw_fault) */
+	int32_t fault;
+	/**
+	 * All discrete inputs in one pair, bit number = discrete input address (bits: enum lw_flag)
+	 */
+	uint32_t flags;
+	/**
+	 * Why a launch is not permitted; 0 means launch permit (bits: enum lw_launch_inhibit_bit)
+	 */
+	int32_t launch_inhibit;
+	/** Carriage position [um] */
+	int32_t position_um;
+	/** Carriage position, whole microsteps [usteps] */
+	int32_t position_usteps;
+	/** Carriage position, Q16.16 [usteps/65536] */
+	int32_t m;
+	/** Slope: microsteps that one forward edge moves the carriage, Q16.16 [usteps/65536] */
+	int32_t u;
+	/** Drum speed, positive hauls rope in [edges/s] */
+	int32_t drum_speed_edges_per_s;
+	/** Rope speed, positive hauls in [mm/s] */
+	int32_t rope_speed_mm_per_s;
+	/** Rope hauled in (positive) or paid out since power-up [mm] */
+	int32_t rope_mm;
+	/** Odometer: net drum edges since power-up [edges] */
+	int64_t net_edges;
+	/** Net edges followed since the last hand-over [edges] */
+	int64_t pattern_edges;
+	/** Time since power-up [ms] */
+	uint32_t uptime_ms;
+	/** Re-indexings after a LOS in this launch */
+	int32_t los_recoveries;
+	/** Last indexing: found minus calibrated position of the other switch [um] */
+	int32_t span_error_um;
+	/** LOS type 1+ since power-up */
+	int32_t los1_plus_count;
+	/** Position of the first since the last indexing [um] */
+	int32_t los1_plus_position_um;
+	/** Its time since power-up [ms] */
+	uint32_t los1_plus_time_ms;
+	/** LOS type 1- since power-up */
+	int32_t los1_minus_count;
+	/** Position of the first since the last indexing [um] */
+	int32_t los1_minus_position_um;
+	/** Its time since power-up [ms] */
+	uint32_t los1_minus_time_ms;
+	/** LOS type 2+ since power-up */
+	int32_t los2_plus_count;
+	/** Position of the first since the last indexing [um] */
+	int32_t los2_plus_position_um;
+	/** Its time since power-up [ms] */
+	uint32_t los2_plus_time_ms;
+	/** LOS type 2- since power-up */
+	int32_t los2_minus_count;
+	/** Position of the first since the last indexing [um] */
+	int32_t los2_minus_position_um;
+	/** Its time since power-up [ms] */
+	uint32_t los2_minus_time_ms;
+	/** Encoder transitions of both channels at once since power-up */
+	uint32_t illegal_transitions;
+	/** Trigger events of the plus limit switch */
+	uint32_t switch_plus_triggers;
+	/** Trigger events of the minus limit switch */
+	uint32_t switch_minus_triggers;
+	/** Step pulses given since power-up [usteps] */
+	uint32_t steps;
+	/** Modbus requests answered or executed */
+	uint32_t requests;
+	/** Modbus frames with a wrong CRC */
+	uint32_t crc_errors;
+	/** Modbus exceptions answered */
+	uint32_t exceptions;
+	/** Counts every command, also refused ones */
+	int32_t command_sequence;
+	/** The last command (enum lw_command) */
+	int32_t command_code;
+	/** How it ended (enum lw_result) */
+	int32_t command_result;
+	/** Why it was refused or failed (enum lw_reason) */
+	int32_t command_reason;
+	/** Offending holding register, 65535 if none */
+	int32_t command_address;
+	/** Offending value */
+	int32_t command_value;
+	/** The limit that it broke */
+	int32_t command_limit;
+	/** Why the last refused request was refused (enum lw_reason) */
+	int32_t last_error_reason;
+	/** Its function code */
+	int32_t last_error_function;
+	/** The exception answered */
+	int32_t last_error_exception;
+	/** The offending address */
+	int32_t last_error_address;
+	/** The offending value */
+	int32_t last_error_value;
+	/** The limit that it broke */
+	int32_t last_error_limit;
+	/** Slope change per edge in a reversal, in force [usteps/65536] */
+	int32_t ka;
+	/** Edges from sweep slope to zero slope, in force [edges] */
+	int32_t nr;
+	/** Sweep slope per edge, in force: Ks = Ka * Nr [usteps/65536] */
+	int32_t ks;
+	/** L+ in force, trim included [usteps] */
+	int32_t reversal_plus_usteps;
+	/** L- in force, trim included [usteps] */
+	int32_t reversal_minus_usteps;
+	/** Overshoot in force: Ks * (Nr - 1) / 2 [um] */
+	int32_t overshoot_actual_um;
+	/** Residual error of the pitch [ppm] */
+	int32_t slope_error_ppm;
+	/** Residual error of the overshoot [um] */
+	int32_t overshoot_error_um;
+	/** Used encoder edges per 1000 drum revolutions, rounded [edges] */
+	uint32_t edges_per_1000_drum_revs;
+	/** Dwell at the plus side [edges] */
+	uint32_t dwell_plus_edges;
+	/** Dwell at the minus side [edges] */
+	uint32_t dwell_minus_edges;
+};
+
+/**
+ * The simulated plant (only in builds that have one). One member for each point, in the memory type
+ * of lw/point.h.
+ */
+struct lw_bench {
+	/** Argument of bench_command; may stand in the same request */
+	int32_t bench_argument;
+	/** Writing a code runs it (enum lw_bench_command) */
+	int32_t bench_command;
+	/** Drum speed asked for; writing it ends a profile [millirpm] */
+	int32_t bench_drum_speed_millirpm;
+	/** How fast the drum reaches it [millirpm/s] */
+	uint32_t bench_drum_acceleration_millirpm_per_s;
+	/** Side load on the carriage, as acceleration [mm/s2] */
+	int32_t bench_side_load_mm_per_s2;
+	/** 1 holds the carriage where it is */
+	int32_t bench_stall;
+	/** Bounce of the limit switches [ms] */
+	int32_t bench_bounce_ms;
+	/** Fault of the plus limit switch (enum lw_switch_fault) */
+	int32_t bench_switch_plus_fault;
+	/** Fault of the minus limit switch (enum lw_switch_fault) */
+	int32_t bench_switch_minus_fault;
+	/** 1 actuates the plus overtravel switch */
+	int32_t bench_overtravel_plus;
+	/** 1 actuates the minus overtravel switch */
+	int32_t bench_overtravel_minus;
+	/** 1 swaps the stepper's direction wire */
+	int32_t bench_direction_reversed;
+	/** Armed fault: real carriage position that releases it [um] */
+	int32_t bench_trigger_position_um;
+	/** Armed fault: only when passing in this direction (0: either) */
+	int32_t bench_trigger_direction;
+	/** Armed fault: its argument */
+	int32_t bench_trigger_argument;
+	/** Writing it arms the fault; reads 0 once released (enum lw_trigger_fault) */
+	int32_t bench_trigger_fault;
+	/**
+	 * 0: the last bench command or armed fault was accepted; else the POSIX error number why
+	 * not
+	 */
+	int32_t bench_result;
+	/** Real carriage position [um] */
+	int32_t bench_carriage_um;
+	/** Real carriage velocity [mm/s] */
+	int32_t bench_carriage_mm_per_s;
+	/** Net step pulses received by the stepper [usteps] */
+	int32_t bench_commanded_usteps;
+	/** Microsteps lost by the stepper, net [usteps] */
+	int32_t bench_slipped_usteps;
+	/** Net A/B transitions of the encoder shaft */
+	int64_t bench_transitions;
+	/** Real drum speed [millirpm] */
+	int32_t bench_drum_actual_millirpm;
+	/** Points of the profile in memory */
+	int32_t bench_profile_points;
+	/** 1 while the profile is played */
+	int32_t bench_profile_running;
+	/** Plant time [ms] */
+	uint32_t bench_time_ms;
+	/** Window of 30 profile points: time in ms, drum speed in millirpm, alternating */
+	int32_t bench_profile[60];
+};
+
+#define LW_MAP_SETPOINTS_COUNT 5
+
+/**
+ * Commands and set-points, effective at once, never stored: holding registers, offsets in struct
+ * lw_setpoints
+ */
+extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
+
+#define LW_MAP_PARAMS_COUNT 51
+
+/**
+ * Parameters (staged). APPLY makes them active, SAVE stores the active set: holding registers,
+ * offsets in struct lw_params
+ */
+extern const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT];
+
+#define LW_MAP_STATUS_COUNT 66
+
+/**
+ * Identity, live status, LOS records, counters, command results and derived values: input
+ * registers, offsets in struct lw_status
+ */
+extern const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT];
+
+#define LW_MAP_BENCH_COUNT 27
+
+/**
+ * The simulated plant (only in builds that have one): holding registers, offsets in struct lw_bench
+ */
+extern const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT];
+
+#define LW_MAP_COILS_COUNT 8
+
+/** Coils, indexed by address */
+extern const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT];
+
+#define LW_MAP_DISCRETES_COUNT 27
+
+/** Discrete inputs, indexed by address */
+extern const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT];
+
+/** enum lw_command that a coil runs, indexed by address; 0: the coil jogs */
+extern const uint8_t lw_map_coil_command[LW_MAP_COILS_COUNT];
+
+/** Direction in which a coil jogs, indexed by address; 0: it runs a command */
+extern const int8_t lw_map_coil_jog[LW_MAP_COILS_COUNT];
+
+/** The factory values of all parameters */
+extern const struct lw_params lw_params_default;
+
+#endif /* LW_MAP_H */

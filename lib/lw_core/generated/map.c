@@ -1,0 +1,829 @@
+/*
+ * The Modbus map: tables.
+ * Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
+ * Do not edit.
+ */
+#include "lw/map.h"
+
+#include <stddef.h>
+
+const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT] = {
+	{
+		.address = 0, .count = 1, .offset = offsetof(struct lw_setpoints, command),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .min = 0,
+		.max = 9, .default_value = 0,
+	},
+	{
+		.address = 1, .count = 1, .offset = offsetof(struct lw_setpoints, mode),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 2,
+		.default_value = 1,
+	},
+	{
+		.address = 2, .count = 1, .offset = offsetof(struct lw_setpoints, jog),
+		.type = LW_TYPE_I16, .flags = LW_POINT_WRITABLE, .min = -1, .max = 1,
+		.default_value = 0,
+	},
+	{
+		.address = 3, .count = 1, .offset = offsetof(struct lw_setpoints, trim_plus_um),
+		.type = LW_TYPE_I16, .flags = LW_POINT_WRITABLE, .min = -20000, .max = 20000,
+		.default_value = 0,
+	},
+	{
+		.address = 4, .count = 1, .offset = offsetof(struct lw_setpoints, trim_minus_um),
+		.type = LW_TYPE_I16, .flags = LW_POINT_WRITABLE, .min = -20000, .max = 20000,
+		.default_value = 0,
+	},
+};
+
+static const int32_t allowed_encoder_edges_per_pulse[] = {1, 2, 4};
+static const int32_t allowed_baud_rate[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
+const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT] = {
+	{
+		.address = 100, .count = 1,
+		.offset = offsetof(struct lw_params, encoder_pulses_per_rev), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1, .max = 10000,
+		.default_value = 360,
+	},
+	{
+		.address = 101, .count = 1,
+		.offset = offsetof(struct lw_params, encoder_edges_per_pulse), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1, .max = 4,
+		.default_value = 2, .allowed = allowed_encoder_edges_per_pulse, .allowed_count = 3,
+	},
+	{
+		.address = 102, .count = 1,
+		.offset = offsetof(struct lw_params, encoder_ratio_numerator), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1, .max = 1000,
+		.default_value = 4,
+	},
+	{
+		.address = 103, .count = 1,
+		.offset = offsetof(struct lw_params, encoder_ratio_denominator),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1,
+		.max = 1000, .default_value = 1,
+	},
+	{
+		.address = 104, .count = 1, .offset = offsetof(struct lw_params, encoder_invert_a),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 1, .default_value = 0,
+	},
+	{
+		.address = 105, .count = 1, .offset = offsetof(struct lw_params, encoder_invert_b),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 1, .default_value = 0,
+	},
+	{
+		.address = 106, .count = 1,
+		.offset = offsetof(struct lw_params, drum_direction_invert), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0, .max = 1,
+		.default_value = 0,
+	},
+	{
+		.address = 107, .count = 1,
+		.offset = offsetof(struct lw_params, rope_per_drum_rev_um), .type = LW_TYPE_U32,
+		.flags = LW_POINT_WRITABLE, .min = 1000, .max = 20000000, .default_value = 2400000,
+	},
+	{
+		.address = 110, .count = 1, .offset = offsetof(struct lw_params, screw_lead_um),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 500,
+		.max = 100000, .default_value = 20000,
+	},
+	{
+		.address = 112, .count = 1,
+		.offset = offsetof(struct lw_params, microsteps_per_rev), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 200, .max = 51200,
+		.default_value = 2000,
+	},
+	{
+		.address = 113, .count = 1,
+		.offset = offsetof(struct lw_params, carriage_direction_invert),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 1, .default_value = 0,
+	},
+	{
+		.address = 114, .count = 1, .offset = offsetof(struct lw_params, pitch_um),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 10,
+		.max = 100000, .default_value = 12000,
+	},
+	{
+		.address = 116, .count = 1, .offset = offsetof(struct lw_params, overshoot_um),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1,
+		.max = 50000, .default_value = 2500,
+	},
+	{
+		.address = 118, .count = 1,
+		.offset = offsetof(struct lw_params, slope_tolerance_ppm), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1, .max = 50000,
+		.default_value = 500,
+	},
+	{
+		.address = 120, .count = 1, .offset = offsetof(struct lw_params, reversal_plus_um),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000,
+		.max = 500000, .default_value = 80000,
+	},
+	{
+		.address = 122, .count = 1, .offset = offsetof(struct lw_params, reversal_minus_um),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000,
+		.max = 500000, .default_value = -80000,
+	},
+	{
+		.address = 124, .count = 1, .offset = offsetof(struct lw_params, flange_plus_um),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000,
+		.max = 500000, .default_value = 82500,
+	},
+	{
+		.address = 126, .count = 1, .offset = offsetof(struct lw_params, flange_minus_um),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000,
+		.max = 500000, .default_value = -82500,
+	},
+	{
+		.address = 128, .count = 1, .offset = offsetof(struct lw_params, switch_plus_um),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000,
+		.max = 500000, .default_value = 78400,
+	},
+	{
+		.address = 130, .count = 1, .offset = offsetof(struct lw_params, switch_minus_um),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000,
+		.max = 500000, .default_value = -78400,
+	},
+	{
+		.address = 132, .count = 1,
+		.offset = offsetof(struct lw_params, switch_tolerance_um), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 10, .max = 20000,
+		.default_value = 1000,
+	},
+	{
+		.address = 133, .count = 1,
+		.offset = offsetof(struct lw_params, switch_hysteresis_um), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 10, .max = 20000,
+		.default_value = 1500,
+	},
+	{
+		.address = 134, .count = 1, .offset = offsetof(struct lw_params, switch_contacts),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 2, .default_value = 0,
+	},
+	{
+		.address = 135, .count = 1, .offset = offsetof(struct lw_params, switch_transit_ms),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 1, .max = 90,
+		.default_value = 20,
+	},
+	{
+		.address = 136, .count = 1,
+		.offset = offsetof(struct lw_params, switch_debounce_ms), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 1, .max = 100, .default_value = 5,
+	},
+	{
+		.address = 137, .count = 1, .offset = offsetof(struct lw_params, travel_um),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1000,
+		.max = 600000, .default_value = 180000,
+	},
+	{
+		.address = 140, .count = 1, .offset = offsetof(struct lw_params, index_switch),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 1, .default_value = 0,
+	},
+	{
+		.address = 141, .count = 1,
+		.offset = offsetof(struct lw_params, index_rate_edges_per_s), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 100, .max = 50000,
+		.default_value = 10000,
+	},
+	{
+		.address = 142, .count = 1, .offset = offsetof(struct lw_params, park_at),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 1, .default_value = 0,
+	},
+	{
+		.address = 143, .count = 1, .offset = offsetof(struct lw_params, park_position_um),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000,
+		.max = 500000, .default_value = 0,
+	},
+	{
+		.address = 145, .count = 1, .offset = offsetof(struct lw_params, span_tolerance_um),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 10,
+		.max = 20000, .default_value = 1000,
+	},
+	{
+		.address = 146, .count = 1,
+		.offset = offsetof(struct lw_params, handover_direction), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.address = 147, .count = 1, .offset = offsetof(struct lw_params, rest_edges_per_s),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 1, .max = 5000,
+		.default_value = 50,
+	},
+	{
+		.address = 148, .count = 1, .offset = offsetof(struct lw_params, rest_time_ms),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 10, .max = 10000,
+		.default_value = 200,
+	},
+	{
+		.address = 149, .count = 1,
+		.offset = offsetof(struct lw_params, centre_position_um), .type = LW_TYPE_I32,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000, .max = 500000,
+		.default_value = 0,
+	},
+	{
+		.address = 151, .count = 1,
+		.offset = offsetof(struct lw_params, jog_rate_edges_per_s), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 100, .max = 50000, .default_value = 5000,
+	},
+	{
+		.address = 152, .count = 1, .offset = offsetof(struct lw_params, jog_hold_ms),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 50, .max = 5000,
+		.default_value = 500,
+	},
+	{
+		.address = 160, .count = 1,
+		.offset = offsetof(struct lw_params, los_recoveries_max), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1000, .default_value = 3,
+	},
+	{
+		.address = 161, .count = 1,
+		.offset = offsetof(struct lw_params, overspeed_warning_edges_per_s),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE, .min = 100, .max = 1000000,
+		.default_value = 52000,
+	},
+	{
+		.address = 163, .count = 1,
+		.offset = offsetof(struct lw_params, overspeed_trip_edges_per_s),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE, .min = 100, .max = 1000000,
+		.default_value = 60000,
+	},
+	{
+		.address = 165, .count = 1, .offset = offsetof(struct lw_params, master_timeout_ms),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 60000,
+		.default_value = 0,
+	},
+	{
+		.address = 166, .count = 1,
+		.offset = offsetof(struct lw_params, dwell_plus_millirev), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0, .max = 10000,
+		.default_value = 0,
+	},
+	{
+		.address = 167, .count = 1,
+		.offset = offsetof(struct lw_params, dwell_minus_millirev), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0, .max = 10000,
+		.default_value = 0,
+	},
+	{
+		.address = 170, .count = 1, .offset = offsetof(struct lw_params, expert_mode),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 1, .default_value = 0,
+	},
+	{
+		.address = 171, .count = 1, .offset = offsetof(struct lw_params, raw_ka),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1,
+		.max = 65535, .default_value = 23,
+	},
+	{
+		.address = 172, .count = 1, .offset = offsetof(struct lw_params, raw_nr),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1,
+		.max = 65535, .default_value = 1187,
+	},
+	{
+		.address = 173, .count = 1,
+		.offset = offsetof(struct lw_params, raw_reversal_plus_usteps), .type = LW_TYPE_I16,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -32000, .max = 32000,
+		.default_value = 8000,
+	},
+	{
+		.address = 174, .count = 1,
+		.offset = offsetof(struct lw_params, raw_reversal_minus_usteps),
+		.type = LW_TYPE_I16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -32000,
+		.max = 32000, .default_value = -8000,
+	},
+	{
+		.address = 180, .count = 1, .offset = offsetof(struct lw_params, unit_id),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_SCOPE_LINE, .min = 1,
+		.max = 247, .default_value = 1,
+	},
+	{
+		.address = 181, .count = 1, .offset = offsetof(struct lw_params, baud_rate),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE | LW_POINT_SCOPE_LINE, .min = 1200,
+		.max = 115200, .default_value = 19200, .allowed = allowed_baud_rate,
+		.allowed_count = 8,
+	},
+	{
+		.address = 183, .count = 1, .offset = offsetof(struct lw_params, line_format),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_SCOPE_LINE, .min = 0,
+		.max = 3, .default_value = 0,
+	},
+};
+
+const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
+	{
+		.address = 0, .count = 1, .offset = offsetof(struct lw_status, self_test),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 2, .count = 1, .offset = offsetof(struct lw_status, map_version),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 3, .count = 1, .offset = offsetof(struct lw_status, version_major),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 4, .count = 1, .offset = offsetof(struct lw_status, version_minor),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 5, .count = 1, .offset = offsetof(struct lw_status, version_patch),
+		.type = LW_TYPE_U16,
+	},
+	{.address = 6, .count = 1, .offset = offsetof(struct lw_status, host), .type = LW_TYPE_U16},
+	{
+		.address = 100, .count = 1, .offset = offsetof(struct lw_status, state),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 101, .count = 1, .offset = offsetof(struct lw_status, active_mode),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 102, .count = 1, .offset = offsetof(struct lw_status, fault),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 103, .count = 1, .offset = offsetof(struct lw_status, flags),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 105, .count = 1, .offset = offsetof(struct lw_status, launch_inhibit),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 106, .count = 1, .offset = offsetof(struct lw_status, position_um),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 108, .count = 1, .offset = offsetof(struct lw_status, position_usteps),
+		.type = LW_TYPE_I16,
+	},
+	{.address = 109, .count = 1, .offset = offsetof(struct lw_status, m), .type = LW_TYPE_I32},
+	{.address = 111, .count = 1, .offset = offsetof(struct lw_status, u), .type = LW_TYPE_I32},
+	{
+		.address = 113, .count = 1,
+		.offset = offsetof(struct lw_status, drum_speed_edges_per_s), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 115, .count = 1,
+		.offset = offsetof(struct lw_status, rope_speed_mm_per_s), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 117, .count = 1, .offset = offsetof(struct lw_status, rope_mm),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 119, .count = 1, .offset = offsetof(struct lw_status, net_edges),
+		.type = LW_TYPE_I64,
+	},
+	{
+		.address = 123, .count = 1, .offset = offsetof(struct lw_status, pattern_edges),
+		.type = LW_TYPE_I64,
+	},
+	{
+		.address = 127, .count = 1, .offset = offsetof(struct lw_status, uptime_ms),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 129, .count = 1, .offset = offsetof(struct lw_status, los_recoveries),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 130, .count = 1, .offset = offsetof(struct lw_status, span_error_um),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 200, .count = 1, .offset = offsetof(struct lw_status, los1_plus_count),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 201, .count = 1,
+		.offset = offsetof(struct lw_status, los1_plus_position_um), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 203, .count = 1, .offset = offsetof(struct lw_status, los1_plus_time_ms),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 210, .count = 1, .offset = offsetof(struct lw_status, los1_minus_count),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 211, .count = 1,
+		.offset = offsetof(struct lw_status, los1_minus_position_um), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 213, .count = 1,
+		.offset = offsetof(struct lw_status, los1_minus_time_ms), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 220, .count = 1, .offset = offsetof(struct lw_status, los2_plus_count),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 221, .count = 1,
+		.offset = offsetof(struct lw_status, los2_plus_position_um), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 223, .count = 1, .offset = offsetof(struct lw_status, los2_plus_time_ms),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 230, .count = 1, .offset = offsetof(struct lw_status, los2_minus_count),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 231, .count = 1,
+		.offset = offsetof(struct lw_status, los2_minus_position_um), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 233, .count = 1,
+		.offset = offsetof(struct lw_status, los2_minus_time_ms), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 300, .count = 1,
+		.offset = offsetof(struct lw_status, illegal_transitions), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 302, .count = 1,
+		.offset = offsetof(struct lw_status, switch_plus_triggers), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 304, .count = 1,
+		.offset = offsetof(struct lw_status, switch_minus_triggers), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 306, .count = 1, .offset = offsetof(struct lw_status, steps),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 308, .count = 1, .offset = offsetof(struct lw_status, requests),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 310, .count = 1, .offset = offsetof(struct lw_status, crc_errors),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 312, .count = 1, .offset = offsetof(struct lw_status, exceptions),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 400, .count = 1, .offset = offsetof(struct lw_status, command_sequence),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 401, .count = 1, .offset = offsetof(struct lw_status, command_code),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 402, .count = 1, .offset = offsetof(struct lw_status, command_result),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 403, .count = 1, .offset = offsetof(struct lw_status, command_reason),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 404, .count = 1, .offset = offsetof(struct lw_status, command_address),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 405, .count = 1, .offset = offsetof(struct lw_status, command_value),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 407, .count = 1, .offset = offsetof(struct lw_status, command_limit),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 410, .count = 1, .offset = offsetof(struct lw_status, last_error_reason),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 411, .count = 1,
+		.offset = offsetof(struct lw_status, last_error_function), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 412, .count = 1,
+		.offset = offsetof(struct lw_status, last_error_exception), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 413, .count = 1,
+		.offset = offsetof(struct lw_status, last_error_address), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 414, .count = 1, .offset = offsetof(struct lw_status, last_error_value),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 416, .count = 1, .offset = offsetof(struct lw_status, last_error_limit),
+		.type = LW_TYPE_I32,
+	},
+	{.address = 500, .count = 1, .offset = offsetof(struct lw_status, ka), .type = LW_TYPE_I32},
+	{.address = 502, .count = 1, .offset = offsetof(struct lw_status, nr), .type = LW_TYPE_I32},
+	{.address = 504, .count = 1, .offset = offsetof(struct lw_status, ks), .type = LW_TYPE_I32},
+	{
+		.address = 506, .count = 1,
+		.offset = offsetof(struct lw_status, reversal_plus_usteps), .type = LW_TYPE_I16,
+	},
+	{
+		.address = 507, .count = 1,
+		.offset = offsetof(struct lw_status, reversal_minus_usteps), .type = LW_TYPE_I16,
+	},
+	{
+		.address = 508, .count = 1,
+		.offset = offsetof(struct lw_status, overshoot_actual_um), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 510, .count = 1, .offset = offsetof(struct lw_status, slope_error_ppm),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 512, .count = 1,
+		.offset = offsetof(struct lw_status, overshoot_error_um), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 514, .count = 1,
+		.offset = offsetof(struct lw_status, edges_per_1000_drum_revs), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 516, .count = 1, .offset = offsetof(struct lw_status, dwell_plus_edges),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 518, .count = 1, .offset = offsetof(struct lw_status, dwell_minus_edges),
+		.type = LW_TYPE_U32,
+	},
+};
+
+const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT] = {
+	{
+		.address = 61440, .count = 1, .offset = offsetof(struct lw_bench, bench_argument),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE, .min = -10000000, .max = 10000000,
+		.default_value = 0,
+	},
+	{
+		.address = 61442, .count = 1, .offset = offsetof(struct lw_bench, bench_command),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .min = 0,
+		.max = 9, .default_value = 0,
+	},
+	{
+		.address = 61443, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_drum_speed_millirpm), .type = LW_TYPE_I32,
+		.flags = LW_POINT_WRITABLE, .min = -3000000, .max = 3000000, .default_value = 0,
+	},
+	{
+		.address = 61445, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_drum_acceleration_millirpm_per_s),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE, .min = 1, .max = 100000000,
+		.default_value = 200000,
+	},
+	{
+		.address = 61447, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_side_load_mm_per_s2), .type = LW_TYPE_I32,
+		.flags = LW_POINT_WRITABLE, .min = -1000000, .max = 1000000, .default_value = 0,
+	},
+	{
+		.address = 61449, .count = 1, .offset = offsetof(struct lw_bench, bench_stall),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1,
+		.default_value = 0,
+	},
+	{
+		.address = 61450, .count = 1, .offset = offsetof(struct lw_bench, bench_bounce_ms),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 100,
+		.default_value = 3,
+	},
+	{
+		.address = 61451, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_switch_plus_fault), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 5, .default_value = 0,
+	},
+	{
+		.address = 61452, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_switch_minus_fault), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 5, .default_value = 0,
+	},
+	{
+		.address = 61453, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_overtravel_plus), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.address = 61454, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_overtravel_minus), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.address = 61455, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_direction_reversed), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.address = 61456, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_trigger_position_um), .type = LW_TYPE_I32,
+		.flags = LW_POINT_WRITABLE, .min = -500000, .max = 500000, .default_value = 0,
+	},
+	{
+		.address = 61458, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_trigger_direction), .type = LW_TYPE_I16,
+		.flags = LW_POINT_WRITABLE, .min = -1, .max = 1, .default_value = 0,
+	},
+	{
+		.address = 61459, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_trigger_argument), .type = LW_TYPE_I32,
+		.flags = LW_POINT_WRITABLE, .min = -10000000, .max = 10000000, .default_value = 0,
+	},
+	{
+		.address = 61461, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_trigger_fault), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 3, .default_value = 0,
+	},
+	{
+		.address = 61469, .count = 1, .offset = offsetof(struct lw_bench, bench_result),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 61470, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_carriage_um), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 61472, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_carriage_mm_per_s), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 61474, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_commanded_usteps), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 61476, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_slipped_usteps), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 61478, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_transitions), .type = LW_TYPE_I64,
+	},
+	{
+		.address = 61482, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_drum_actual_millirpm),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 61484, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_profile_points), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 61485, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_profile_running), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 61486, .count = 1, .offset = offsetof(struct lw_bench, bench_time_ms),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 61500, .count = 60, .offset = offsetof(struct lw_bench, bench_profile),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE, .min = -3000000, .max = 100000000,
+		.default_value = 0,
+	},
+};
+
+const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT] = {
+	{
+		.address = 0, .count = 1, .offset = 0, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 1, .count = 1, .offset = 1, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 2, .count = 1, .offset = 2, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 3, .count = 1, .offset = 3, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 4, .count = 1, .offset = 4, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 5, .count = 1, .offset = 5, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 6, .count = 1, .offset = 6, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE, .max = 1,
+	},
+	{
+		.address = 7, .count = 1, .offset = 7, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE, .max = 1,
+	},
+};
+
+const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT] = {
+	{.address = 0, .count = 1, .offset = 0, .type = LW_TYPE_BIT},
+	{.address = 1, .count = 1, .offset = 1, .type = LW_TYPE_BIT},
+	{.address = 2, .count = 1, .offset = 2, .type = LW_TYPE_BIT},
+	{.address = 3, .count = 1, .offset = 3, .type = LW_TYPE_BIT},
+	{.address = 4, .count = 1, .offset = 4, .type = LW_TYPE_BIT},
+	{.address = 5, .count = 1, .offset = 5, .type = LW_TYPE_BIT},
+	{.address = 6, .count = 1, .offset = 6, .type = LW_TYPE_BIT},
+	{.address = 7, .count = 1, .offset = 7, .type = LW_TYPE_BIT},
+	{.address = 8, .count = 1, .offset = 8, .type = LW_TYPE_BIT},
+	{.address = 9, .count = 1, .offset = 9, .type = LW_TYPE_BIT},
+	{.address = 10, .count = 1, .offset = 10, .type = LW_TYPE_BIT},
+	{.address = 11, .count = 1, .offset = 11, .type = LW_TYPE_BIT},
+	{.address = 12, .count = 1, .offset = 12, .type = LW_TYPE_BIT},
+	{.address = 13, .count = 1, .offset = 13, .type = LW_TYPE_BIT},
+	{.address = 14, .count = 1, .offset = 14, .type = LW_TYPE_BIT},
+	{.address = 15, .count = 1, .offset = 15, .type = LW_TYPE_BIT},
+	{.address = 16, .count = 1, .offset = 16, .type = LW_TYPE_BIT},
+	{.address = 17, .count = 1, .offset = 17, .type = LW_TYPE_BIT},
+	{.address = 18, .count = 1, .offset = 18, .type = LW_TYPE_BIT},
+	{.address = 19, .count = 1, .offset = 19, .type = LW_TYPE_BIT},
+	{.address = 20, .count = 1, .offset = 20, .type = LW_TYPE_BIT},
+	{.address = 21, .count = 1, .offset = 21, .type = LW_TYPE_BIT},
+	{.address = 22, .count = 1, .offset = 22, .type = LW_TYPE_BIT},
+	{.address = 23, .count = 1, .offset = 23, .type = LW_TYPE_BIT},
+	{.address = 24, .count = 1, .offset = 24, .type = LW_TYPE_BIT},
+	{.address = 25, .count = 1, .offset = 25, .type = LW_TYPE_BIT},
+	{.address = 26, .count = 1, .offset = 26, .type = LW_TYPE_BIT},
+};
+
+const uint8_t lw_map_coil_command[LW_MAP_COILS_COUNT] = {
+	[LW_ADDRESS_INDEX] = LW_COMMAND_INDEX,
+	[LW_ADDRESS_STOP] = LW_COMMAND_STOP,
+	[LW_ADDRESS_CLEAR_FAULT] = LW_COMMAND_CLEAR_FAULT,
+	[LW_ADDRESS_APPLY] = LW_COMMAND_APPLY,
+	[LW_ADDRESS_REVERT] = LW_COMMAND_REVERT,
+	[LW_ADDRESS_SAVE] = LW_COMMAND_SAVE,
+	[LW_ADDRESS_JOG_PLUS] = 0,
+	[LW_ADDRESS_JOG_MINUS] = 0,
+};
+
+const int8_t lw_map_coil_jog[LW_MAP_COILS_COUNT] = {
+	[LW_ADDRESS_JOG_PLUS] = 1,
+	[LW_ADDRESS_JOG_MINUS] = -1,
+};
+
+const struct lw_params lw_params_default = {
+	.encoder_pulses_per_rev = 360,
+	.encoder_edges_per_pulse = 2,
+	.encoder_ratio_numerator = 4,
+	.encoder_ratio_denominator = 1,
+	.encoder_invert_a = 0,
+	.encoder_invert_b = 0,
+	.drum_direction_invert = 0,
+	.rope_per_drum_rev_um = 2400000,
+	.screw_lead_um = 20000,
+	.microsteps_per_rev = 2000,
+	.carriage_direction_invert = 0,
+	.pitch_um = 12000,
+	.overshoot_um = 2500,
+	.slope_tolerance_ppm = 500,
+	.reversal_plus_um = 80000,
+	.reversal_minus_um = -80000,
+	.flange_plus_um = 82500,
+	.flange_minus_um = -82500,
+	.switch_plus_um = 78400,
+	.switch_minus_um = -78400,
+	.switch_tolerance_um = 1000,
+	.switch_hysteresis_um = 1500,
+	.switch_contacts = 0,
+	.switch_transit_ms = 20,
+	.switch_debounce_ms = 5,
+	.travel_um = 180000,
+	.index_switch = 0,
+	.index_rate_edges_per_s = 10000,
+	.park_at = 0,
+	.park_position_um = 0,
+	.span_tolerance_um = 1000,
+	.handover_direction = 0,
+	.rest_edges_per_s = 50,
+	.rest_time_ms = 200,
+	.centre_position_um = 0,
+	.jog_rate_edges_per_s = 5000,
+	.jog_hold_ms = 500,
+	.los_recoveries_max = 3,
+	.overspeed_warning_edges_per_s = 52000,
+	.overspeed_trip_edges_per_s = 60000,
+	.master_timeout_ms = 0,
+	.dwell_plus_millirev = 0,
+	.dwell_minus_millirev = 0,
+	.expert_mode = 0,
+	.raw_ka = 23,
+	.raw_nr = 1187,
+	.raw_reversal_plus_usteps = 8000,
+	.raw_reversal_minus_usteps = -8000,
+	.unit_id = 1,
+	.baud_rate = 19200,
+	.line_format = 0,
+};

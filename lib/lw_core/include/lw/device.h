@@ -1,0 +1,115 @@
+/**
+ * @file
+ * The whole level wind controller as one object: control, parameter sets, commands, Modbus slave.
+ * A host owns one, feeds it pins, bytes and time, and does what it asks for.
+ *
+ * Encoder, limit switches, edge timer and tick go to `device.controller` (lw/controller.h), bytes
+ * to `device.slave` (lw/slave.h). Functions here are not for interrupt context.
+ */
+#ifndef LW_DEVICE_H
+#define LW_DEVICE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "lw/bank.h"
+#include "lw/controller.h"
+#include "lw/map.h"
+#include "lw/params.h"
+#include "lw/record.h"
+#include "lw/slave.h"
+
+/** Sections of the bank that a device makes itself, and room for the host's. */
+enum {
+	LW_DEVICE_SECTIONS = 7,
+	LW_DEVICE_HOST_SECTIONS = 1,
+};
+
+/** What the host is. */
+struct lw_device_config {
+	enum lw_host host;
+	/** Further registers that the host offers (the bench), or NULL. */
+	const struct lw_bank_section *host_section;
+	/** Silence that ends a frame; 0: by the baud rate in use (lw_rtu_silence_us()). */
+	uint32_t silence_us;
+	/** Unit id to use instead of the stored one; 0: the stored one. */
+	uint8_t unit_id;
+};
+
+/** The last command, for the registers command_*. */
+struct lw_device_command {
+	uint16_t sequence;
+	uint8_t code;   /**< enum lw_command */
+	uint8_t result; /**< enum lw_result */
+	struct lw_refusal why;
+};
+
+/** State. The host reads; everything is written by the functions here and by the slave. */
+struct lw_device {
+	struct lw_controller controller;
+	struct lw_slave slave;
+
+	struct lw_params active;
+	struct lw_params staged;
+	struct lw_params stored;
+	struct lw_derived derived; /**< of the active set */
+	bool defaults_loaded;      /**< no usable record at power-up */
+	struct lw_params line;     /**< set whose line settings are in use */
+
+	struct lw_device_command command;
+
+	bool save_pending; /**< `record` waits for the host to write it */
+	struct lw_params saving;
+	uint8_t record[LW_RECORD_SIZE];
+
+	uint64_t now_us;           /**< of the last tick */
+	uint64_t heard_request_us; /**< slave's time of the last request that was noticed */
+	uint64_t heard_us;         /**< when it was noticed, in ticks' time */
+
+	/* Images that a Modbus request reads. */
+	struct lw_setpoints setpoints_image;
+	struct lw_status status_image;
+	uint32_t coils_image;
+
+	const struct lw_device_config *config;
+	struct lw_bank_section sections[LW_DEVICE_SECTIONS + LW_DEVICE_HOST_SECTIONS];
+	struct lw_bank bank;
+	struct lw_slave_config slave_config;
+};
+
+/**
+ * Power up.
+ *
+ * @param config must outlive the device
+ * @param record what the storage holds, or NULL
+ * @param length its bytes
+ * @param inputs pins now
+ * @param now_us time for the controller
+ * @param slave_now_us time for the slave, which may be another clock
+ */
+void lw_device_init(struct lw_device *device, const struct lw_device_config *config,
+		    const uint8_t *record, size_t length, const struct lw_inputs *inputs,
+		    uint64_t now_us, uint64_t slave_now_us);
+
+/** Supervise. Call every LW_CONTROLLER_TICK_US; includes lw_controller_tick(). */
+void lw_device_tick(struct lw_device *device, uint64_t now_us);
+
+/**
+ * Does a record wait to be written?
+ *
+ * @return LW_RECORD_SIZE bytes, or NULL
+ */
+const uint8_t *lw_device_pending_record(const struct lw_device *device);
+
+/**
+ * Report that the pending record has been written.
+ *
+ * @param result 0, or a negative errno if the storage failed
+ */
+void lw_device_record_written(struct lw_device *device, int result);
+
+/** Fill `status_image` with one consistent snapshot. */
+void lw_device_refresh_status(struct lw_device *device);
+
+#endif /* LW_DEVICE_H */

@@ -1,0 +1,22 @@
+# The one list of the controller's sources, for the host build and the firmware build.
+set(LW_CORE_SOURCES
+  generated/map.c
+  src/bank.c
+  src/controller.c
+  src/crc16.c
+  src/device.c
+  src/device_bank.c
+  src/device_status.c
+  src/homing.c
+  src/limit_switch.c
+  src/motion.c
+  src/move.c
+  src/params.c
+  src/pdu.c
+  src/record.c
+  src/rtu.c
+  src/slave.c
+  src/tracking.c
+)
+list(TRANSFORM LW_CORE_SOURCES PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
+set(LW_CORE_INCLUDE_DIRS ${CMAKE_CURRENT_LIST_DIR}/include ${CMAKE_CURRENT_LIST_DIR}/generated)

@@ -1,0 +1,334 @@
+#include "lw/bank.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "lw/map.h"
+
+/** Where in the bank an address lies. */
+struct place {
+	const struct lw_bank_section *section;
+	const struct lw_point *point;
+	uint16_t element;    /**< which one of an array */
+	uint16_t part;       /**< which register of the element, 0 the high word */
+	uint16_t part_count; /**< registers per element, 1 for bits */
+};
+
+static uint16_t registers_of(const struct lw_point *point)
+{
+	switch ((enum lw_type)point->type) {
+	case LW_TYPE_U32:
+	case LW_TYPE_I32:
+		return 2;
+	case LW_TYPE_I64:
+		return 4;
+	case LW_TYPE_BIT:
+	case LW_TYPE_U16:
+	case LW_TYPE_I16:
+		break;
+	}
+	return 1;
+}
+
+/* The last point that begins at or before the address, NULL if there is none. */
+static const struct lw_point *point_before(const struct lw_bank_section *section, uint32_t address)
+{
+	size_t low = 0;
+	size_t high = section->point_count;
+
+	while (low < high) {
+		size_t middle = low + (high - low) / 2;
+
+		if ((uint32_t)section->points[middle].address + section->address_offset <=
+		    address) {
+			low = middle + 1;
+		} else {
+			high = middle;
+		}
+	}
+	return low == 0 ? NULL : &section->points[low - 1];
+}
+
+static bool find(const struct lw_bank *bank, enum lw_space space, uint32_t address,
+		 struct place *place)
+{
+	for (size_t i = 0; i < bank->section_count; i++) {
+		const struct lw_bank_section *section = &bank->sections[i];
+		const struct lw_point *point = NULL;
+		uint32_t distance;
+		uint16_t part_count;
+
+		if (section->space == space) {
+			point = point_before(section, address);
+		}
+		if (point == NULL) {
+			continue;
+		}
+		distance = address - point->address - section->address_offset;
+		part_count = registers_of(point);
+		if (distance < (uint32_t)point->count * part_count) {
+			*place = (struct place){
+				.section = section,
+				.point = point,
+				.element = (uint16_t)(distance / part_count),
+				.part = (uint16_t)(distance % part_count),
+				.part_count = part_count,
+			};
+			return true;
+		}
+	}
+	return false;
+}
+
+static int refuse(struct lw_refusal *why, int error, enum lw_reason reason, uint32_t address)
+{
+	*why = (struct lw_refusal){.reason = (uint16_t)reason, .address = (uint16_t)address};
+	return error;
+}
+
+static int refuse_value(struct lw_refusal *why, enum lw_reason reason, uint32_t address,
+			int32_t value, int32_t limit)
+{
+	refuse(why, -EINVAL, reason, address);
+	why->value = value;
+	why->limit = limit;
+	return -EINVAL;
+}
+
+static int check_known(const struct lw_bank *bank, enum lw_space space, uint16_t address,
+		       uint16_t count, struct lw_refusal *why)
+{
+	struct place place;
+	uint32_t end = (uint32_t)address + count;
+
+	for (uint32_t i = address; i < end; i++) {
+		if (i > UINT16_MAX) {
+			return refuse(why, -ENXIO, LW_REASON_UNKNOWN_ADDRESS, LW_NO_ADDRESS);
+		}
+		if (!find(bank, space, i, &place)) {
+			return refuse(why, -ENXIO, LW_REASON_UNKNOWN_ADDRESS, i);
+		}
+	}
+	return 0;
+}
+
+/* One element from memory, sign-extended. The tables say where it is and how wide. */
+static uint64_t load(const void *image, const struct place *place)
+{
+	const uint8_t *at = (const uint8_t *)image + place->point->offset;
+	int32_t narrow;
+	int64_t wide;
+
+	if (place->point->type == LW_TYPE_I64) {
+		memcpy(&wide, at + place->element * sizeof(wide), sizeof(wide));
+	} else {
+		memcpy(&narrow, at + place->element * sizeof(narrow), sizeof(narrow));
+		wide = narrow;
+	}
+	return (uint64_t)wide;
+}
+
+int lw_bank_read_registers(const struct lw_bank *bank, enum lw_space space, uint16_t address,
+			   uint16_t count, uint8_t *out, struct lw_refusal *why)
+{
+	const struct lw_bank_section *section = NULL;
+	const void *image = NULL;
+	struct place place;
+	int error = check_known(bank, space, address, count, why);
+
+	for (uint16_t i = 0; error == 0 && i < count; i++) {
+		unsigned int shift;
+		uint64_t value;
+
+		find(bank, space, (uint32_t)address + i, &place);
+		if (place.section != section) {
+			section = place.section;
+			image = section->image(section->context);
+		}
+		shift = 16u * (place.part_count - 1u - place.part);
+		value = load(image, &place) >> shift;
+		out[2 * i] = (uint8_t)(value >> 8);
+		out[2 * i + 1] = (uint8_t)value;
+	}
+	return error;
+}
+
+int lw_bank_read_bits(const struct lw_bank *bank, enum lw_space space, uint16_t address,
+		      uint16_t count, uint8_t *out, struct lw_refusal *why)
+{
+	const struct lw_bank_section *section = NULL;
+	const uint32_t *bits = NULL;
+	struct place place;
+	int error = check_known(bank, space, address, count, why);
+
+	if (error != 0) {
+		return error;
+	}
+	memset(out, 0, (count + 7u) / 8u);
+	for (uint16_t i = 0; i < count; i++) {
+		find(bank, space, (uint32_t)address + i, &place);
+		if (place.section != section) {
+			section = place.section;
+			bits = section->image(section->context);
+		}
+		if ((*bits >> (place.point->offset + place.element)) & 1u) {
+			out[i / 8] |= (uint8_t)(1u << (i % 8));
+		}
+	}
+	return 0;
+}
+
+/** A write on its way through the stages: nothing is stored before all of it is checked. */
+struct request {
+	const struct lw_bank *bank;
+	enum lw_space space;
+	uint32_t address;
+	uint32_t count;
+	const uint8_t *in;
+	struct lw_refusal *why;
+	bool has_command;
+};
+
+typedef int (*stage_function)(struct request *request, const struct place *place, uint32_t address);
+
+static int walk(struct request *request, stage_function stage)
+{
+	uint32_t end = request->address + request->count;
+	struct place place;
+	int error = 0;
+
+	for (uint32_t i = request->address; error == 0 && i < end; i += place.part_count) {
+		find(request->bank, request->space, i, &place);
+		error = stage(request, &place, i);
+	}
+	return error;
+}
+
+/* The value that the request has for an address, as on the wire. */
+static uint32_t wire_value(const struct request *request, const struct place *place,
+			   uint32_t address)
+{
+	uint32_t position = address - request->address;
+	uint32_t value = 0;
+
+	if (place->point->type == LW_TYPE_BIT) {
+		return ((uint32_t)request->in[position / 8] >> (position % 8)) & 1u;
+	}
+	for (uint32_t i = 0; i < place->part_count; i++) {
+		const uint8_t *word = &request->in[2 * (position + i)];
+
+		value = (value << 16) | (uint32_t)(word[0] << 8) | word[1];
+	}
+	return value;
+}
+
+static int32_t signed_value(const struct place *place, uint32_t wire)
+{
+	return place->point->type == LW_TYPE_I16 ? (int16_t)wire : (int32_t)wire;
+}
+
+static int check_writable(struct request *request, const struct place *place, uint32_t address)
+{
+	const struct lw_bank_section *section = place->section;
+
+	if (!(place->point->flags & LW_POINT_WRITABLE) || section->allow == NULL ||
+	    section->store == NULL) {
+		return refuse(request->why, -ENXIO, LW_REASON_NOT_WRITABLE, address);
+	}
+	if (place->part != 0 || address + place->part_count > request->address + request->count) {
+		return refuse(request->why, -ENXIO, LW_REASON_HALF_OF_PAIR, address);
+	}
+	return 0;
+}
+
+bool lw_point_allows(const struct lw_point *point, int64_t value, int32_t *limit)
+{
+	int64_t smallest = INT64_MAX;
+
+	if (point->allowed == NULL) {
+		*limit = value < point->min ? point->min : point->max;
+		return value >= point->min && value <= point->max;
+	}
+	for (uint8_t i = 0; i < point->allowed_count; i++) {
+		int64_t difference = value - point->allowed[i];
+		int64_t distance = difference < 0 ? -difference : difference;
+
+		if (distance < smallest) {
+			smallest = distance;
+			*limit = point->allowed[i];
+		}
+	}
+	return smallest == 0;
+}
+
+static int check_value(struct request *request, const struct place *place, uint32_t address)
+{
+	const struct lw_point *point = place->point;
+	uint32_t wire = wire_value(request, place, address);
+	int32_t value = signed_value(place, wire);
+	int32_t limit = 0;
+
+	if (point->type != LW_TYPE_BIT &&
+	    !lw_point_allows(point, point->type == LW_TYPE_U32 ? (int64_t)wire : value, &limit)) {
+		return refuse_value(request->why, LW_REASON_OUT_OF_RANGE, address, value, limit);
+	}
+	if (value != 0 && (point->flags & LW_POINT_COMMAND)) {
+		if (request->has_command) {
+			return refuse_value(request->why, LW_REASON_SEVERAL_COMMANDS, address,
+					    value, 0);
+		}
+		request->has_command = true;
+	}
+	return 0;
+}
+
+static int ask_owner(struct request *request, const struct place *place, uint32_t address)
+{
+	const struct lw_bank_section *section = place->section;
+	int32_t value = signed_value(place, wire_value(request, place, address));
+
+	refuse_value(request->why, LW_REASON_NONE, address, value, 0);
+	return section->allow(section->context, place->point, place->element, value, request->why);
+}
+
+static int store(struct request *request, const struct place *place, uint32_t address)
+{
+	const struct lw_bank_section *section = place->section;
+	int32_t value = signed_value(place, wire_value(request, place, address));
+
+	section->store(section->context, place->point, place->element, value);
+	return 0;
+}
+
+static int write_all(const struct lw_bank *bank, enum lw_space space, uint16_t address,
+		     uint16_t count, const uint8_t *in, struct lw_refusal *why)
+{
+	static const stage_function stages[] = {check_writable, check_value, ask_owner, store};
+	struct request request = {
+		.bank = bank,
+		.space = space,
+		.address = address,
+		.count = count,
+		.in = in,
+		.why = why,
+	};
+	int error = check_known(bank, space, address, count, why);
+
+	for (size_t i = 0; error == 0 && i < sizeof(stages) / sizeof(stages[0]); i++) {
+		error = walk(&request, stages[i]);
+	}
+	return error;
+}
+
+int lw_bank_write_registers(const struct lw_bank *bank, uint16_t address, uint16_t count,
+			    const uint8_t *in, struct lw_refusal *why)
+{
+	return write_all(bank, LW_SPACE_HOLDING, address, count, in, why);
+}
+
+int lw_bank_write_bits(const struct lw_bank *bank, uint16_t address, uint16_t count,
+		       const uint8_t *in, struct lw_refusal *why)
+{
+	return write_all(bank, LW_SPACE_COIL, address, count, in, why);
+}

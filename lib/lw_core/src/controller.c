@@ -1,0 +1,511 @@
+#include "lw/controller.h"
+
+#include <errno.h>
+#include <stddef.h>
+
+#include "controller_internal.h"
+
+static uint8_t side_bit(int side)
+{
+	return side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS;
+}
+
+static int busy(struct lw_refusal *why, enum lw_reason reason)
+{
+	why->reason = (uint16_t)reason;
+	return -EBUSY;
+}
+
+void lw_controller_cut(struct lw_controller *controller)
+{
+	struct lw_motion *motion = &controller->motion;
+
+	motion->source = LW_EDGE_SOURCE_NONE;
+	motion->requests = 0;
+	motion->request_correction_usteps = 0;
+	motion->stop_at_rest = 0;
+	controller->halting = false;
+	controller->halt_sent = false;
+}
+
+void lw_controller_fail(struct lw_controller *controller, enum lw_fault fault)
+{
+	lw_controller_cut(controller);
+	controller->state = LW_STATE_FAULT;
+	controller->fault = fault;
+	controller->indexed = false;
+	controller->on_orbit = false;
+}
+
+struct lw_law_window *lw_controller_spare_window(struct lw_controller *controller)
+{
+	return controller->motion.window == &controller->windows[0] ? &controller->windows[1]
+								    : &controller->windows[0];
+}
+
+struct lw_law_window lw_controller_track_window(const struct lw_controller *controller)
+{
+	return lw_params_window(controller->params, controller->derived, controller->trim_plus_um,
+				controller->trim_minus_um);
+}
+
+void lw_controller_request(struct lw_controller *controller, struct lw_law_window window,
+			   enum lw_motion_request request, int32_t correction_usteps)
+{
+	struct lw_motion *motion = &controller->motion;
+	struct lw_law_window *spare;
+
+	/* Withdraw an earlier window first: the interrupt must not read it half changed. */
+	motion->requests &= LW_MOTION_REQUEST_CORRECTION;
+	spare = lw_controller_spare_window(controller);
+	*spare = window;
+	motion->request_window = spare;
+	if (request == LW_MOTION_REQUEST_REBASE) {
+		motion->requests = 0;
+		motion->request_correction_usteps = correction_usteps;
+	}
+	motion->requests |= (uint8_t)request;
+}
+
+bool lw_controller_moves_toward(int direction, int side)
+{
+	return direction == lw_side_direction(side);
+}
+
+void lw_controller_init(struct lw_controller *controller, const struct lw_params *params,
+			const struct lw_derived *derived, const struct lw_inputs *inputs,
+			uint64_t now_us)
+{
+	*controller = (struct lw_controller){
+		.params = params,
+		.derived = derived,
+		.quadrature_config = lw_params_quadrature(params),
+		.limit_config = lw_params_limit_switch(params),
+		.state = LW_STATE_UNINDEXED,
+		.mode = LW_MODE_TRACK,
+		.requested_mode = LW_MODE_TRACK,
+		.rest_since_us = now_us,
+		.now_us = now_us,
+	};
+	controller->windows[0] = lw_controller_track_window(controller);
+	lw_motion_init(&controller->motion, &controller->windows[0]);
+	lw_quadrature_init(&controller->quadrature, &controller->quadrature_config,
+			   inputs->encoder_a, inputs->encoder_b);
+	for (int side = 0; side < 2; side++) {
+		lw_limit_switch_init(&controller->limit[side], &controller->limit_config,
+				     inputs->limit[side].no_closed, inputs->limit[side].nc_closed,
+				     now_us);
+		lw_controller_overtravel(controller, side, inputs->overtravel[side]);
+	}
+}
+
+void lw_controller_configure(struct lw_controller *controller, const struct lw_params *params,
+			     const struct lw_derived *derived, bool need_index)
+{
+	const struct lw_quadrature_config old = controller->quadrature_config;
+
+	controller->params = params;
+	controller->derived = derived;
+	controller->limit_config = lw_params_limit_switch(params);
+	controller->quadrature_config = lw_params_quadrature(params);
+	/* The levels keep their meaning under a changed inversion. */
+	controller->quadrature.levels ^=
+		(uint8_t)(((old.invert_a != controller->quadrature_config.invert_a) << 1) |
+			  (old.invert_b != controller->quadrature_config.invert_b));
+	if (!need_index) {
+		return;
+	}
+	controller->trim_plus_um = 0;
+	controller->trim_minus_um = 0;
+	lw_controller_cut(controller);
+	controller->windows[0] = lw_controller_track_window(controller);
+	controller->motion.window = &controller->windows[0];
+	controller->indexed = false;
+	controller->on_orbit = false;
+	if (controller->state == LW_STATE_READY || controller->state == LW_STATE_CENTRED) {
+		controller->state = LW_STATE_UNINDEXED;
+	}
+}
+
+/** The step as the stepper driver's direction input wants it. */
+static int driver_step(const struct lw_controller *controller, int step)
+{
+	return controller->params->carriage_direction_invert ? -step : step;
+}
+
+int lw_controller_encoder(struct lw_controller *controller, bool a, bool b)
+{
+	const int dd =
+		lw_quadrature_update(&controller->quadrature, &controller->quadrature_config, a, b);
+
+	return dd ? driver_step(controller, lw_motion_encoder_edge(&controller->motion, dd)) : 0;
+}
+
+int lw_controller_timer_edge(struct lw_controller *controller)
+{
+	return driver_step(controller, lw_motion_timer_edge(&controller->motion));
+}
+
+void lw_controller_limit(struct lw_controller *controller, int side, bool no_closed, bool nc_closed,
+			 uint64_t now_us)
+{
+	const struct lw_limit_switch_trigger at = {
+		.pos_usteps = lw_law_pos_usteps(controller->motion.law.m),
+		.direction = (int8_t)lw_motion_direction(&controller->motion),
+	};
+
+	lw_limit_switch_input(&controller->limit[side], &controller->limit_config, no_closed,
+			      nc_closed, at, now_us);
+}
+
+void lw_controller_overtravel(struct lw_controller *controller, int side, bool actuated)
+{
+	controller->overtravel[side] = actuated;
+	if (actuated) {
+		controller->motion.blocked |= side_bit(side);
+	} else {
+		controller->motion.blocked &= (uint8_t)~side_bit(side);
+	}
+}
+
+bool lw_controller_moving(const struct lw_controller *controller)
+{
+	switch (controller->state) {
+	case LW_STATE_BACKING_OFF:
+	case LW_STATE_SEEKING:
+	case LW_STATE_INDEX_REVERSAL:
+	case LW_STATE_SPAN_CHECK:
+	case LW_STATE_PARKING:
+	case LW_STATE_CENTRING:
+	case LW_STATE_JOGGING:
+		return true;
+	default:
+		return false;
+	}
+}
+
+uint32_t lw_controller_timer_rate_edges_per_s(const struct lw_controller *controller)
+{
+	if (controller->motion.source != LW_EDGE_SOURCE_TIMER) {
+		return 0;
+	}
+	return (uint32_t)(controller->state == LW_STATE_JOGGING
+				  ? controller->params->jog_rate_edges_per_s
+				  : controller->params->index_rate_edges_per_s);
+}
+
+bool lw_controller_stepper_enabled(const struct lw_controller *controller)
+{
+	if (controller->state == LW_STATE_OFF) {
+		return false;
+	}
+	return !(controller->state == LW_STATE_FAULT &&
+		 (controller->overtravel[LW_PLUS] || controller->overtravel[LW_MINUS]));
+}
+
+static bool any_los(const struct lw_controller *controller)
+{
+	return controller->los1[LW_PLUS].set || controller->los1[LW_MINUS].set ||
+	       controller->los2[LW_PLUS].set || controller->los2[LW_MINUS].set;
+}
+
+uint16_t lw_controller_launch_inhibit(const struct lw_controller *controller)
+{
+	unsigned int inhibit = 0;
+
+	inhibit |= (unsigned int)(controller->state != LW_STATE_TRACKING || !controller->indexed)
+		   << LW_LAUNCH_INHIBIT_NOT_TRACKING;
+	inhibit |= (unsigned int)any_los(controller) << LW_LAUNCH_INHIBIT_LOS;
+	inhibit |= (unsigned int)(controller->fault != LW_FAULT_NONE) << LW_LAUNCH_INHIBIT_FAULT;
+	inhibit |= (unsigned int)(controller->wiring[LW_PLUS] || controller->wiring[LW_MINUS])
+		   << LW_LAUNCH_INHIBIT_WIRING;
+	inhibit |=
+		(unsigned int)(controller->overtravel[LW_PLUS] || controller->overtravel[LW_MINUS])
+		<< LW_LAUNCH_INHIBIT_OVERTRAVEL;
+	inhibit |= (unsigned int)controller->overspeed_trip << LW_LAUNCH_INHIBIT_OVERSPEED;
+	inhibit |= (unsigned int)controller->master_lost << LW_LAUNCH_INHIBIT_MASTER_LOST;
+	inhibit |= (unsigned int)((controller->motion.requests & LW_MOTION_REQUEST_CORRECTION) != 0)
+		   << LW_LAUNCH_INHIBIT_CORRECTION;
+	return (uint16_t)inhibit;
+}
+
+int lw_controller_busy(const struct lw_controller *controller, struct lw_refusal *why)
+{
+	if (controller->state == LW_STATE_TRACKING) {
+		return busy(why, LW_REASON_BUSY_TRACKING);
+	}
+	return lw_controller_moving(controller) ? busy(why, LW_REASON_BUSY_MOVING) : 0;
+}
+
+int lw_controller_allow_index(const struct lw_controller *controller, struct lw_refusal *why)
+{
+	if (controller->state == LW_STATE_OFF) {
+		return busy(why, LW_REASON_MODE_OFF);
+	}
+	if (lw_controller_moving(controller)) {
+		return busy(why, LW_REASON_BUSY_MOVING);
+	}
+	return controller->drum_at_rest ? 0 : busy(why, LW_REASON_DRUM_MOVING);
+}
+
+void lw_controller_index(struct lw_controller *controller)
+{
+	controller->held = false;
+	lw_homing_start(controller);
+}
+
+void lw_controller_stop(struct lw_controller *controller)
+{
+	if (controller->state == LW_STATE_TRACKING) {
+		if (controller->drum_at_rest) {
+			lw_tracking_leave(controller);
+			controller->state = LW_STATE_READY;
+		} else {
+			/* From full speed the stepper loses steps: the position is lost. */
+			lw_controller_cut(controller);
+			controller->indexed = false;
+			controller->state = LW_STATE_UNINDEXED;
+		}
+	} else if (lw_controller_moving(controller)) {
+		lw_homing_halt(controller, controller->indexed ? LW_STATE_READY
+					   : controller->fault ? LW_STATE_FAULT
+							       : LW_STATE_UNINDEXED);
+	}
+	controller->held = true;
+}
+
+/** Does the cause of a fault still stand? */
+static bool cause_present(const struct lw_controller *controller)
+{
+	const struct lw_limit_switch *limit = controller->limit;
+
+	switch (controller->fault) {
+	case LW_FAULT_WIRING_PLUS:
+	case LW_FAULT_WIRING_MINUS:
+		return limit[LW_PLUS].wiring_fault || limit[LW_MINUS].wiring_fault;
+	case LW_FAULT_OVERTRAVEL_PLUS:
+	case LW_FAULT_OVERTRAVEL_MINUS:
+		return controller->overtravel[LW_PLUS] || controller->overtravel[LW_MINUS];
+	case LW_FAULT_BOTH_SWITCHES_ACTIVE:
+		return limit[LW_PLUS].active && limit[LW_MINUS].active;
+	default:
+		return false;
+	}
+}
+
+int lw_controller_allow_clear_fault(const struct lw_controller *controller, struct lw_refusal *why)
+{
+	return cause_present(controller) ? busy(why, LW_REASON_CAUSE_PRESENT) : 0;
+}
+
+void lw_controller_clear_fault(struct lw_controller *controller)
+{
+	controller->fault = LW_FAULT_NONE;
+	controller->overspeed_trip = false;
+	for (int side = 0; side < 2; side++) {
+		controller->wiring[side] = controller->limit[side].wiring_fault;
+	}
+	if (controller->state == LW_STATE_FAULT) {
+		controller->state = LW_STATE_UNINDEXED;
+	}
+}
+
+void lw_controller_set_mode(struct lw_controller *controller, enum lw_mode mode)
+{
+	controller->requested_mode = mode;
+	controller->held = false;
+}
+
+int lw_controller_allow_jog(const struct lw_controller *controller, int direction,
+			    struct lw_refusal *why)
+{
+	if (direction == 0) {
+		return 0;
+	}
+
+	const int side = direction > 0 ? LW_PLUS : LW_MINUS;
+
+	if (controller->state == LW_STATE_OFF) {
+		return busy(why, LW_REASON_MODE_OFF);
+	}
+	if (controller->state == LW_STATE_JOGGING) {
+		return controller->move_direction == direction && !controller->halting
+			       ? 0
+			       : busy(why, LW_REASON_BUSY_MOVING);
+	}
+	if (lw_controller_moving(controller)) {
+		return busy(why, LW_REASON_BUSY_MOVING);
+	}
+	if (controller->state == LW_STATE_TRACKING && !controller->drum_at_rest) {
+		return busy(why, LW_REASON_BUSY_TRACKING);
+	}
+	if (controller->overtravel[side] ||
+	    (!controller->indexed && controller->limit[side].active)) {
+		return busy(why, LW_REASON_OVERTRAVEL);
+	}
+	return 0;
+}
+
+void lw_controller_jog(struct lw_controller *controller, int direction, uint64_t now_us)
+{
+	controller->jog_written_us = now_us;
+	if (controller->state == LW_STATE_JOGGING) {
+		if (direction == 0) {
+			lw_homing_halt(controller, controller->rest_state);
+		}
+		return;
+	}
+	if (direction == 0) {
+		return;
+	}
+
+	int32_t target_usteps = direction * controller->derived->travel_usteps;
+	enum lw_state rest_state = controller->fault ? LW_STATE_FAULT : LW_STATE_UNINDEXED;
+
+	if (controller->state == LW_STATE_TRACKING) {
+		lw_tracking_leave(controller);
+	}
+	if (controller->indexed) {
+		const struct lw_law_window window = lw_controller_track_window(controller);
+
+		/* Come to rest a little inside, so that a hand-over begins in the sweep. */
+		target_usteps = direction > 0 ? lw_law_pos_usteps(window.sweep_end) - 2
+					      : lw_law_pos_usteps(window.sweep_begin) + 2;
+		rest_state = LW_STATE_READY;
+		if (direction * (target_usteps - lw_law_pos_usteps(controller->motion.law.m)) <=
+		    0) {
+			controller->state = LW_STATE_READY;
+			return; /* at the limit already */
+		}
+	} else {
+		controller->motion.law = (struct lw_law){0};
+	}
+	controller->move_direction = (int8_t)direction;
+	lw_homing_move_to(controller, target_usteps, LW_STATE_JOGGING, rest_state);
+}
+
+void lw_controller_set_trim(struct lw_controller *controller, int32_t trim_plus_um,
+			    int32_t trim_minus_um)
+{
+	controller->trim_plus_um = trim_plus_um;
+	controller->trim_minus_um = trim_minus_um;
+	if (controller->state == LW_STATE_TRACKING || controller->on_orbit) {
+		lw_controller_request(controller, lw_controller_track_window(controller),
+				      LW_MOTION_REQUEST_WINDOW, 0);
+	}
+}
+
+/** Measure the drum speed over the last LW_CONTROLLER_SPEED_TICKS ticks, and whether it rests. */
+static void measure_speed(struct lw_controller *controller, uint64_t now_us)
+{
+	const int64_t edges = controller->motion.net_edges;
+	int64_t *oldest = &controller->edge_history[controller->edge_history_next];
+	const int64_t speed =
+		(edges - *oldest) * 1000000 / (LW_CONTROLLER_SPEED_TICKS * LW_CONTROLLER_TICK_US);
+	const int64_t rest = controller->params->rest_edges_per_s;
+
+	*oldest = edges;
+	controller->edge_history_next =
+		(uint8_t)((controller->edge_history_next + 1) % LW_CONTROLLER_SPEED_TICKS);
+	controller->drum_speed_edges_per_s = (int32_t)speed;
+	if (speed >= rest || speed <= -rest) {
+		controller->rest_since_us = now_us;
+	}
+	controller->drum_at_rest = now_us - controller->rest_since_us >=
+				   (uint64_t)controller->params->rest_time_ms * 1000;
+}
+
+static void check_overtravel(struct lw_controller *controller)
+{
+	for (int side = 0; side < 2; side++) {
+		const bool backing_away = controller->state == LW_STATE_BACKING_OFF &&
+					  controller->back_off_side == side;
+		const bool jogging_away =
+			controller->state == LW_STATE_JOGGING &&
+			!lw_controller_moves_toward(controller->move_direction, side);
+
+		if (!controller->overtravel[side] || backing_away || jogging_away ||
+		    controller->state == LW_STATE_OFF || controller->state == LW_STATE_FAULT) {
+			continue;
+		}
+		lw_controller_fail(controller, side == LW_PLUS ? LW_FAULT_OVERTRAVEL_PLUS
+							       : LW_FAULT_OVERTRAVEL_MINUS);
+	}
+}
+
+static void check_speed(struct lw_controller *controller)
+{
+	const int64_t speed = controller->drum_speed_edges_per_s;
+
+	if (controller->state == LW_STATE_TRACKING &&
+	    (speed < 0 ? -speed : speed) >
+		    (int64_t)controller->params->overspeed_trip_edges_per_s) {
+		controller->overspeed_trip = true;
+		lw_controller_fail(controller, LW_FAULT_OVERSPEED);
+	}
+}
+
+/** Bring the requested mode into force. */
+static void serve_mode(struct lw_controller *controller)
+{
+	const enum lw_mode wanted = controller->requested_mode;
+
+	if (wanted == LW_MODE_OFF) {
+		if (controller->state != LW_STATE_OFF) {
+			lw_controller_cut(controller);
+			controller->state = LW_STATE_OFF;
+			controller->indexed = false;
+			controller->on_orbit = false;
+		}
+		controller->mode = wanted;
+		return;
+	}
+	if (controller->state == LW_STATE_OFF) {
+		controller->state = controller->fault ? LW_STATE_FAULT : LW_STATE_UNINDEXED;
+	}
+	if (controller->state == LW_STATE_TRACKING && wanted != LW_MODE_TRACK &&
+	    !controller->drum_at_rest) {
+		return; /* finish what the drum does first */
+	}
+	controller->mode = wanted;
+	if (controller->held) {
+		return;
+	}
+	if (wanted == LW_MODE_TRACK) {
+		if ((controller->state == LW_STATE_READY ||
+		     controller->state == LW_STATE_CENTRED) &&
+		    controller->drum_at_rest) {
+			lw_tracking_start(controller);
+		}
+	} else if (controller->state == LW_STATE_TRACKING || controller->state == LW_STATE_READY) {
+		if (controller->state == LW_STATE_TRACKING) {
+			lw_tracking_leave(controller);
+		}
+		lw_homing_move_to(controller, controller->derived->centre_usteps, LW_STATE_CENTRING,
+				  LW_STATE_CENTRED);
+	}
+}
+
+void lw_controller_tick(struct lw_controller *controller, uint64_t now_us)
+{
+	struct lw_controller_trigger triggers[2] = {0};
+
+	controller->now_us = now_us;
+	for (int side = 0; side < 2; side++) {
+		struct lw_limit_switch *limit = &controller->limit[side];
+
+		lw_limit_switch_tick(limit, &controller->limit_config, now_us);
+		controller->wiring[side] |= limit->wiring_fault;
+		triggers[side].taken = lw_limit_switch_take(limit, &triggers[side].at);
+	}
+
+	measure_speed(controller, now_us);
+	check_overtravel(controller);
+	check_speed(controller);
+	if (controller->state == LW_STATE_TRACKING) {
+		lw_tracking_tick(controller, triggers);
+	} else if (lw_controller_moving(controller)) {
+		lw_homing_tick(controller, triggers);
+	}
+	serve_mode(controller);
+}

@@ -1,0 +1,265 @@
+#include "device_internal.h"
+
+#include <errno.h>
+#include <string.h>
+
+static int allow_and_note(struct lw_device *device, enum lw_command command, struct lw_refusal *why)
+{
+	const int ret = lw_device_allow_command(device, command, why);
+
+	if (ret) {
+		lw_device_note_command(device, command, LW_RESULT_REFUSED);
+		device->command.why.reason = why->reason;
+	}
+	return ret;
+}
+
+static const void *coils_image(void *context)
+{
+	struct lw_device *device = context;
+	const struct lw_controller *controller = &device->controller;
+
+	device->coils_image = 0;
+	for (size_t i = 0; i < LW_MAP_COILS_COUNT; i++) {
+		const bool on = lw_map_coil_jog[i] != 0
+					? controller->state == LW_STATE_JOGGING &&
+						  !controller->halting &&
+						  controller->move_direction == lw_map_coil_jog[i]
+					: device->command.code == lw_map_coil_command[i] &&
+						  device->command.result == LW_RESULT_IN_PROGRESS;
+
+		device->coils_image |= (uint32_t)on << i;
+	}
+	return &device->coils_image;
+}
+
+static int coils_allow(void *context, const struct lw_point *point, uint16_t element, int32_t value,
+		       struct lw_refusal *why)
+{
+	struct lw_device *device = context;
+
+	(void)element;
+	if (value == 0) {
+		return 0;
+	}
+	if (lw_map_coil_jog[point->address] != 0) {
+		return lw_controller_allow_jog(&device->controller, lw_map_coil_jog[point->address],
+					       why);
+	}
+	return allow_and_note(device, (enum lw_command)lw_map_coil_command[point->address], why);
+}
+
+static void coils_store(void *context, const struct lw_point *point, uint16_t element,
+			int32_t value)
+{
+	struct lw_device *device = context;
+	struct lw_controller *controller = &device->controller;
+	const int8_t jog = lw_map_coil_jog[point->address];
+
+	(void)element;
+	if (jog != 0) {
+		/* Releasing one jog coil must not end a jog the other way. */
+		if (value != 0) {
+			lw_controller_jog(controller, jog, device->now_us);
+		} else if (controller->move_direction == jog) {
+			lw_controller_jog(controller, 0, device->now_us);
+		}
+	} else if (value != 0) {
+		lw_device_run_command(device, (enum lw_command)lw_map_coil_command[point->address]);
+	}
+}
+
+static const void *discretes_image(void *context)
+{
+	struct lw_device *device = context;
+
+	lw_device_refresh_status(device);
+	return &device->status_image.flags;
+}
+
+static const void *setpoints_image(void *context)
+{
+	struct lw_device *device = context;
+	const struct lw_controller *controller = &device->controller;
+
+	device->setpoints_image = (struct lw_setpoints){
+		.command = device->command.code,
+		.mode = (int32_t)controller->requested_mode,
+		.jog = controller->state == LW_STATE_JOGGING && !controller->halting
+			       ? controller->move_direction
+			       : 0,
+		.trim_plus_um = controller->trim_plus_um,
+		.trim_minus_um = controller->trim_minus_um,
+	};
+	return &device->setpoints_image;
+}
+
+static int allow_trim(const struct lw_device *device, int32_t plus_um, int32_t minus_um,
+		      const struct lw_point *point, int32_t value, struct lw_refusal *why)
+{
+	if (lw_controller_moving(&device->controller)) {
+		why->reason = LW_REASON_BUSY_MOVING;
+		return -EBUSY;
+	}
+
+	const int ret =
+		lw_params_check_trim(&device->active, &device->derived, plus_um, minus_um, why);
+
+	if (ret) {
+		/* Blame the register that was written. */
+		why->address = point->address;
+		why->value = value;
+	}
+	return ret;
+}
+
+static int setpoints_allow(void *context, const struct lw_point *point, uint16_t element,
+			   int32_t value, struct lw_refusal *why)
+{
+	struct lw_device *device = context;
+	const struct lw_controller *controller = &device->controller;
+
+	(void)element;
+	switch (point->address) {
+	case LW_ADDRESS_COMMAND:
+		return allow_and_note(device, (enum lw_command)value, why);
+	case LW_ADDRESS_JOG:
+		return lw_controller_allow_jog(controller, value, why);
+	case LW_ADDRESS_TRIM_PLUS_UM:
+		return allow_trim(device, value, controller->trim_minus_um, point, value, why);
+	case LW_ADDRESS_TRIM_MINUS_UM:
+		return allow_trim(device, controller->trim_plus_um, value, point, value, why);
+	default:
+		return 0;
+	}
+}
+
+static void setpoints_store(void *context, const struct lw_point *point, uint16_t element,
+			    int32_t value)
+{
+	struct lw_device *device = context;
+	struct lw_controller *controller = &device->controller;
+
+	(void)element;
+	switch (point->address) {
+	case LW_ADDRESS_COMMAND:
+		if (value != LW_COMMAND_NONE) {
+			lw_device_run_command(device, (enum lw_command)value);
+		}
+		break;
+	case LW_ADDRESS_MODE:
+		lw_controller_set_mode(controller, (enum lw_mode)value);
+		break;
+	case LW_ADDRESS_JOG:
+		lw_controller_jog(controller, value, device->now_us);
+		break;
+	case LW_ADDRESS_TRIM_PLUS_UM:
+		lw_controller_set_trim(controller, value, controller->trim_minus_um);
+		break;
+	case LW_ADDRESS_TRIM_MINUS_UM:
+		lw_controller_set_trim(controller, controller->trim_plus_um, value);
+		break;
+	default:
+		break;
+	}
+}
+
+static const void *params_image(void *context)
+{
+	return context;
+}
+
+static const void *staged_image(void *context)
+{
+	return &((struct lw_device *)context)->staged;
+}
+
+static int staged_allow(void *context, const struct lw_point *point, uint16_t element,
+			int32_t value, struct lw_refusal *why)
+{
+	const struct lw_device *device = context;
+
+	(void)point;
+	(void)element;
+	(void)value;
+	if (device->controller.state == LW_STATE_TRACKING) {
+		why->reason = LW_REASON_BUSY_TRACKING;
+		return -EBUSY;
+	}
+	return 0;
+}
+
+static void staged_store(void *context, const struct lw_point *point, uint16_t element,
+			 int32_t value)
+{
+	struct lw_device *device = context;
+
+	(void)element; /* no parameter is an array */
+	memcpy((char *)&device->staged + point->offset, &value, sizeof(value));
+}
+
+static const void *status_image(void *context)
+{
+	struct lw_device *device = context;
+
+	lw_device_refresh_status(device);
+	return &device->status_image;
+}
+
+void lw_device_make_bank(struct lw_device *device)
+{
+	const struct lw_bank_section sections[LW_DEVICE_SECTIONS] = {
+		{.space = LW_SPACE_COIL,
+		 .points = lw_map_coils,
+		 .point_count = LW_MAP_COILS_COUNT,
+		 .context = device,
+		 .image = coils_image,
+		 .allow = coils_allow,
+		 .store = coils_store},
+		{.space = LW_SPACE_DISCRETE,
+		 .points = lw_map_discretes,
+		 .point_count = LW_MAP_DISCRETES_COUNT,
+		 .context = device,
+		 .image = discretes_image},
+		{.space = LW_SPACE_HOLDING,
+		 .points = lw_map_setpoints,
+		 .point_count = LW_MAP_SETPOINTS_COUNT,
+		 .context = device,
+		 .image = setpoints_image,
+		 .allow = setpoints_allow,
+		 .store = setpoints_store},
+		{.space = LW_SPACE_HOLDING,
+		 .points = lw_map_params,
+		 .point_count = LW_MAP_PARAMS_COUNT,
+		 .context = device,
+		 .image = staged_image,
+		 .allow = staged_allow,
+		 .store = staged_store},
+		{.space = LW_SPACE_INPUT,
+		 .points = lw_map_status,
+		 .point_count = LW_MAP_STATUS_COUNT,
+		 .context = device,
+		 .image = status_image},
+		{.space = LW_SPACE_INPUT,
+		 .points = lw_map_params,
+		 .point_count = LW_MAP_PARAMS_COUNT,
+		 .address_offset = LW_MAP_ACTIVE_ADDRESS_OFFSET,
+		 .context = &device->active,
+		 .image = params_image},
+		{.space = LW_SPACE_INPUT,
+		 .points = lw_map_params,
+		 .point_count = LW_MAP_PARAMS_COUNT,
+		 .address_offset = LW_MAP_STORED_ADDRESS_OFFSET,
+		 .context = &device->stored,
+		 .image = params_image},
+	};
+
+	memcpy(device->sections, sections, sizeof(sections));
+	device->bank = (struct lw_bank){
+		.sections = device->sections,
+		.section_count = LW_DEVICE_SECTIONS,
+	};
+	if (device->config->host_section != NULL) {
+		device->sections[device->bank.section_count++] = *device->config->host_section;
+	}
+}

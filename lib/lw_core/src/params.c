@@ -1,0 +1,440 @@
+#include "lw/params.h"
+
+#include <errno.h>
+#include <stddef.h>
+#include <string.h>
+
+/** Largest position that a motion may reach: leaves a slope's worth of room below int16. */
+#define POSITION_MAX_USTEPS 32700
+
+static int refuse(struct lw_refusal *why, enum lw_reason reason, unsigned int address,
+		  int64_t value, int64_t limit)
+{
+	why->reason = (uint16_t)reason;
+	why->address = (uint16_t)address;
+	why->value = (int32_t)value;
+	why->limit = (int32_t)limit;
+	return -EINVAL;
+}
+
+/** Quotient of two integers, den > 0, rounded to nearest, halves away from zero. */
+static int64_t divide_nearest(int64_t num, int64_t den)
+{
+	return (num >= 0 ? num + den / 2 : num - den / 2) / den;
+}
+
+int32_t lw_params_um_to_usteps(const struct lw_params *params, int32_t um)
+{
+	return (int32_t)divide_nearest((int64_t)um * params->microsteps_per_rev,
+				       (int64_t)params->screw_lead_um);
+}
+
+int32_t lw_params_q16_to_um(const struct lw_params *params, int64_t q16)
+{
+	return (int32_t)divide_nearest(q16 * (int64_t)params->screw_lead_um,
+				       (int64_t)params->microsteps_per_rev * LW_USTEP);
+}
+
+/** Used encoder edges per drum revolution, as the fraction num / den. */
+static void edges_per_drum_rev(const struct lw_params *params, int64_t *num, int64_t *den)
+{
+	*num = (int64_t)params->encoder_pulses_per_rev * params->encoder_edges_per_pulse *
+	       params->encoder_ratio_numerator;
+	*den = params->encoder_ratio_denominator;
+}
+
+/**
+ * The slope that the pitch asks for, Q32.32 / 65536: Q16.16 with 16 more fractional bits.
+ * pitch / lead * microsteps / edges_per_drum_rev, all within the limits of their registers:
+ * numerator < 4e17, denominator < 5e12.
+ */
+static int64_t ideal_slope_q32(const struct lw_params *params)
+{
+	int64_t edges_num;
+	int64_t edges_den;
+
+	edges_per_drum_rev(params, &edges_num, &edges_den);
+
+	const int64_t num =
+		(int64_t)params->pitch_um * params->microsteps_per_rev * edges_den * LW_USTEP;
+	const int64_t den = (int64_t)params->screw_lead_um * edges_num;
+
+	if (num / den > INT32_MAX) {
+		return (int64_t)INT32_MAX * LW_USTEP; /* hopelessly steep, do not overflow */
+	}
+	return num / den * LW_USTEP + num % den * LW_USTEP / den;
+}
+
+/** Overshoot past the entry of a reversal, Q16.16 (P5). 2^16 * 2^16 / 2 at the most. */
+static int64_t overshoot_q16(int64_t ka, int64_t nr)
+{
+	return ka * nr * (nr - 1) / 2;
+}
+
+/**
+ * Choose Ka and Nr: of all pairs whose Ka * Nr meets the ideal slope within the tolerance, the one
+ * whose Nr is nearest to the Nr that the overshoot asks for, 2 dP / Ks + 1.
+ */
+static int choose_slope(const struct lw_params *params, struct lw_derived *derived,
+			struct lw_refusal *why)
+{
+	const int64_t ideal_q32 = ideal_slope_q32(params);
+	const int64_t tolerance_q32 = ideal_q32 / 1000000 * params->slope_tolerance_ppm +
+				      ideal_q32 % 1000000 * params->slope_tolerance_ppm / 1000000;
+	const int64_t ideal = divide_nearest(ideal_q32, LW_USTEP);
+
+	if (ideal > LW_USTEP - 1) {
+		return refuse(why, LW_REASON_SLOPE_ABOVE_ONE_STEP, LW_ADDRESS_PITCH_UM,
+			      params->pitch_um, (int64_t)params->pitch_um * (LW_USTEP - 1) / ideal);
+	}
+	if (ideal < 1) {
+		return refuse(why, LW_REASON_SLOPE_TOO_SMALL, LW_ADDRESS_PITCH_UM, params->pitch_um,
+			      params->pitch_um);
+	}
+
+	const int64_t overshoot_usteps_q16 = (int64_t)params->overshoot_um *
+					     params->microsteps_per_rev * LW_USTEP /
+					     params->screw_lead_um;
+	const int64_t nr_wanted = 2 * overshoot_usteps_q16 / ideal + 1;
+
+	/* Beyond `ideal` edges Ka would be below 1. */
+	const int64_t nr_start = nr_wanted < ideal ? nr_wanted : ideal;
+
+	for (int64_t distance = 0; distance <= ideal; distance++) {
+		const int64_t candidates[2] = {nr_start - distance, nr_start + distance};
+
+		for (int i = 0; i < 2; i++) {
+			const int64_t nr = candidates[i];
+
+			if (nr < 1 || nr > ideal) {
+				continue;
+			}
+
+			const int64_t ka = divide_nearest(ideal_q32, nr * LW_USTEP);
+			const int64_t ks = ka * nr;
+			const int64_t error_q32 = ks * LW_USTEP - ideal_q32;
+
+			if (ks >= LW_USTEP ||
+			    (error_q32 < 0 ? -error_q32 : error_q32) > tolerance_q32) {
+				continue;
+			}
+			derived->ka = (int32_t)ka;
+			derived->nr = (int32_t)nr;
+			derived->slope_error_ppm =
+				(int32_t)divide_nearest(error_q32 * 1000000, ideal_q32);
+			return 0;
+		}
+	}
+	return refuse(why, LW_REASON_SLOPE_UNREACHABLE, LW_ADDRESS_SLOPE_TOLERANCE_PPM,
+		      params->slope_tolerance_ppm, divide_nearest(1000000, 2 * ideal) + 1);
+}
+
+/** L+ and L- of a set that may be trimmed. */
+static void reversals(const struct lw_params *params, int32_t trim_plus_um, int32_t trim_minus_um,
+		      int32_t *plus_usteps, int32_t *minus_usteps)
+{
+	if (params->expert_mode) {
+		*plus_usteps = params->raw_reversal_plus_usteps +
+			       lw_params_um_to_usteps(params, trim_plus_um);
+		*minus_usteps = params->raw_reversal_minus_usteps +
+				lw_params_um_to_usteps(params, trim_minus_um);
+	} else {
+		*plus_usteps =
+			lw_params_um_to_usteps(params, params->reversal_plus_um + trim_plus_um);
+		*minus_usteps =
+			lw_params_um_to_usteps(params, params->reversal_minus_um + trim_minus_um);
+	}
+}
+
+/** The rules that bind reversal points, switches and flanges; also for a trim. */
+static int check_geometry(const struct lw_params *params, const struct lw_derived *derived,
+			  struct lw_refusal *why)
+{
+	const unsigned int plus_address = params->expert_mode ? LW_ADDRESS_RAW_REVERSAL_PLUS_USTEPS
+							      : LW_ADDRESS_REVERSAL_PLUS_UM;
+	const unsigned int minus_address = params->expert_mode
+						   ? LW_ADDRESS_RAW_REVERSAL_MINUS_USTEPS
+						   : LW_ADDRESS_REVERSAL_MINUS_UM;
+	const int32_t plus = derived->reversal_plus_usteps;
+	const int32_t minus = derived->reversal_minus_usteps;
+	const int32_t plus_um = lw_params_q16_to_um(params, (int64_t)plus * LW_USTEP);
+	const int32_t minus_um = lw_params_q16_to_um(params, (int64_t)minus * LW_USTEP);
+	/* P5: pos stays within [L- - dP - 1, L+ + dP + 1]. */
+	const int32_t reach = derived->overshoot_q16 / LW_USTEP + 2;
+
+	if (plus - minus < 2) {
+		return refuse(why, LW_REASON_REVERSALS_CROSSED, minus_address, minus_um, plus_um);
+	}
+	if (derived->switch_usteps[LW_PLUS] >= plus) {
+		return refuse(why, LW_REASON_SWITCH_PLUS_OUTSIDE, LW_ADDRESS_SWITCH_PLUS_UM,
+			      params->switch_plus_um, plus_um);
+	}
+	if (derived->switch_usteps[LW_MINUS] <= minus) {
+		return refuse(why, LW_REASON_SWITCH_MINUS_OUTSIDE, LW_ADDRESS_SWITCH_MINUS_UM,
+			      params->switch_minus_um, minus_um);
+	}
+
+	const int32_t flange_plus = lw_params_um_to_usteps(params, params->flange_plus_um);
+	const int32_t flange_minus = lw_params_um_to_usteps(params, params->flange_minus_um);
+
+	if (plus + reach > POSITION_MAX_USTEPS) {
+		return refuse(why, LW_REASON_POSITION_OVERFLOW, plus_address, plus + reach,
+			      POSITION_MAX_USTEPS);
+	}
+	if (minus - reach < -POSITION_MAX_USTEPS) {
+		return refuse(why, LW_REASON_POSITION_OVERFLOW, minus_address, minus - reach,
+			      -POSITION_MAX_USTEPS);
+	}
+	if (plus + reach > flange_plus) {
+		return refuse(why, LW_REASON_OVERSHOOT_BEYOND_FLANGE_PLUS,
+			      LW_ADDRESS_FLANGE_PLUS_UM, params->flange_plus_um,
+			      lw_params_q16_to_um(params, (int64_t)(plus + reach) * LW_USTEP));
+	}
+	if (minus - reach < flange_minus) {
+		return refuse(why, LW_REASON_OVERSHOOT_BEYOND_FLANGE_MINUS,
+			      LW_ADDRESS_FLANGE_MINUS_UM, params->flange_minus_um,
+			      lw_params_q16_to_um(params, (int64_t)(minus - reach) * LW_USTEP));
+	}
+	return 0;
+}
+
+/** Rules for switches, ramps, parking and travel that a trim cannot break. */
+static int check_motion(const struct lw_params *params, const struct lw_derived *derived,
+			struct lw_refusal *why)
+{
+	const int32_t plus = derived->switch_usteps[LW_PLUS];
+	const int32_t minus = derived->switch_usteps[LW_MINUS];
+	const int32_t clearance =
+		2 * (derived->switch_tolerance_usteps + derived->switch_hysteresis_usteps);
+	/* A full ramp is Ks * (Nr + 1) / 2: overshoot plus one slope, which is below 1 microstep.
+	 */
+	const int32_t ramp = derived->overshoot_q16 / LW_USTEP + 2;
+
+	if (plus - minus <= clearance) {
+		return refuse(why, LW_REASON_SWITCHES_CROSSED, LW_ADDRESS_SWITCH_MINUS_UM,
+			      params->switch_minus_um,
+			      params->switch_plus_um -
+				      lw_params_q16_to_um(params, (int64_t)clearance * LW_USTEP));
+	}
+	if (plus - minus - clearance < 2 * ramp) {
+		return refuse(why, LW_REASON_RAMP_DOES_NOT_FIT,
+			      params->expert_mode ? LW_ADDRESS_RAW_NR : LW_ADDRESS_OVERSHOOT_UM,
+			      params->expert_mode ? params->raw_nr : (int64_t)params->overshoot_um,
+			      lw_params_q16_to_um(params, (int64_t)(plus - minus - clearance) / 2 *
+								  LW_USTEP));
+	}
+	if (params->switch_plus_um + params->switch_tolerance_um > params->flange_plus_um) {
+		return refuse(why, LW_REASON_TOLERANCE_BEYOND_FLANGE,
+			      LW_ADDRESS_SWITCH_TOLERANCE_UM, params->switch_tolerance_um,
+			      params->flange_plus_um - params->switch_plus_um);
+	}
+	if (params->switch_minus_um - params->switch_tolerance_um < params->flange_minus_um) {
+		return refuse(why, LW_REASON_TOLERANCE_BEYOND_FLANGE,
+			      LW_ADDRESS_SWITCH_TOLERANCE_UM, params->switch_tolerance_um,
+			      params->switch_minus_um - params->flange_minus_um);
+	}
+	if (params->park_at == LW_PARK_AT_POSITION &&
+	    (derived->park_usteps + ramp > plus || derived->park_usteps - ramp < minus)) {
+		const bool above = derived->park_usteps + ramp > plus;
+
+		return refuse(
+			why, LW_REASON_PARK_OUTSIDE, LW_ADDRESS_PARK_POSITION_UM,
+			params->park_position_um,
+			lw_params_q16_to_um(params, (int64_t)(above ? plus - ramp : minus + ramp) *
+							    LW_USTEP));
+	}
+	if (derived->centre_usteps <= minus || derived->centre_usteps >= plus) {
+		return refuse(why, LW_REASON_CENTRE_OUTSIDE, LW_ADDRESS_CENTRE_POSITION_UM,
+			      params->centre_position_um,
+			      derived->centre_usteps <= minus ? params->switch_minus_um
+							      : params->switch_plus_um);
+	}
+	if ((int64_t)params->travel_um <
+	    (int64_t)params->flange_plus_um - params->flange_minus_um) {
+		return refuse(why, LW_REASON_TRAVEL_TOO_SHORT, LW_ADDRESS_TRAVEL_UM,
+			      params->travel_um,
+			      (int64_t)params->flange_plus_um - params->flange_minus_um);
+	}
+	/* A seek starts at most one ramp before 0 and ends within the travel. */
+	if (derived->travel_usteps + 2 * ramp > POSITION_MAX_USTEPS) {
+		return refuse(why, LW_REASON_POSITION_OVERFLOW, LW_ADDRESS_TRAVEL_UM,
+			      derived->travel_usteps + 2 * ramp, POSITION_MAX_USTEPS);
+	}
+	if (params->overspeed_warning_edges_per_s > params->overspeed_trip_edges_per_s) {
+		return refuse(why, LW_REASON_OVERSPEED_LIMITS_CROSSED,
+			      LW_ADDRESS_OVERSPEED_WARNING_EDGES_PER_S,
+			      params->overspeed_warning_edges_per_s,
+			      params->overspeed_trip_edges_per_s);
+	}
+	if (params->switch_contacts != LW_SWITCH_CONTACTS_NO_NC_PAIR) {
+		/* Indexing turns round at the reversal point: the event must come before it. */
+		const int32_t rate = params->index_rate_edges_per_s;
+		const int64_t debounced_q16 =
+			(int64_t)derived->ks * rate / 1000 * params->switch_debounce_ms;
+		const int side = (int)params->index_switch;
+		const int64_t room_usteps =
+			side == LW_PLUS
+				? derived->reversal_plus_usteps - derived->switch_usteps[side]
+				: derived->switch_usteps[side] - derived->reversal_minus_usteps;
+
+		if (debounced_q16 >= room_usteps * LW_USTEP) {
+			return refuse(why, LW_REASON_DEBOUNCE_TOO_LONG,
+				      LW_ADDRESS_SWITCH_DEBOUNCE_MS, params->switch_debounce_ms,
+				      room_usteps * LW_USTEP * 1000 /
+					      ((int64_t)derived->ks * rate));
+		}
+	}
+	return 0;
+}
+
+int lw_params_derive(const struct lw_params *params, struct lw_derived *derived,
+		     struct lw_refusal *why)
+{
+	struct lw_derived result = {0};
+	int64_t edges_num;
+	int64_t edges_den;
+	int ret;
+
+	edges_per_drum_rev(params, &edges_num, &edges_den);
+	if (edges_num < edges_den) {
+		return refuse(why, LW_REASON_TOO_FEW_EDGES, LW_ADDRESS_ENCODER_RATIO_DENOMINATOR,
+			      edges_den, edges_num);
+	}
+	result.edges_per_1000_drum_revs = (uint32_t)divide_nearest(1000 * edges_num, edges_den);
+	result.dwell_plus_edges =
+		(uint32_t)divide_nearest(edges_num * params->dwell_plus_millirev, edges_den * 1000);
+	result.dwell_minus_edges = (uint32_t)divide_nearest(
+		edges_num * params->dwell_minus_millirev, edges_den * 1000);
+
+	if (params->expert_mode) {
+		result.ka = params->raw_ka;
+		result.nr = params->raw_nr;
+		if ((int64_t)result.ka * result.nr >= LW_USTEP) {
+			return refuse(why, LW_REASON_SLOPE_ABOVE_ONE_STEP, LW_ADDRESS_RAW_NR,
+				      result.nr, (LW_USTEP - 1) / result.ka);
+		}
+	} else {
+		ret = choose_slope(params, &result, why);
+		if (ret) {
+			return ret;
+		}
+	}
+	result.ks = result.ka * result.nr;
+
+	result.overshoot_q16 = (int32_t)overshoot_q16(result.ka, result.nr);
+	result.overshoot_um = lw_params_q16_to_um(params, result.overshoot_q16);
+	result.overshoot_error_um =
+		params->expert_mode ? 0 : result.overshoot_um - (int32_t)params->overshoot_um;
+
+	/* Every position must fit before any is compared in microsteps. */
+	const struct {
+		unsigned int address;
+		int32_t um;
+	} positions[] = {
+		{LW_ADDRESS_REVERSAL_PLUS_UM, params->reversal_plus_um},
+		{LW_ADDRESS_REVERSAL_MINUS_UM, params->reversal_minus_um},
+		{LW_ADDRESS_FLANGE_PLUS_UM, params->flange_plus_um},
+		{LW_ADDRESS_FLANGE_MINUS_UM, params->flange_minus_um},
+		{LW_ADDRESS_SWITCH_PLUS_UM, params->switch_plus_um},
+		{LW_ADDRESS_SWITCH_MINUS_UM, params->switch_minus_um},
+		{LW_ADDRESS_PARK_POSITION_UM, params->park_position_um},
+		{LW_ADDRESS_CENTRE_POSITION_UM, params->centre_position_um},
+		{LW_ADDRESS_TRAVEL_UM, (int32_t)params->travel_um},
+		{LW_ADDRESS_SWITCH_TOLERANCE_UM, params->switch_tolerance_um},
+		{LW_ADDRESS_SWITCH_HYSTERESIS_UM, params->switch_hysteresis_um},
+		{LW_ADDRESS_SPAN_TOLERANCE_UM, params->span_tolerance_um},
+	};
+	const int32_t position_max_um =
+		lw_params_q16_to_um(params, (int64_t)POSITION_MAX_USTEPS * LW_USTEP);
+
+	for (size_t i = 0; i < sizeof(positions) / sizeof(positions[0]); i++) {
+		const int32_t um = positions[i].um;
+
+		if (um > position_max_um || um < -position_max_um) {
+			return refuse(why, LW_REASON_POSITION_OVERFLOW, positions[i].address, um,
+				      um > 0 ? position_max_um : -position_max_um);
+		}
+	}
+
+	reversals(params, 0, 0, &result.reversal_plus_usteps, &result.reversal_minus_usteps);
+	result.switch_usteps[LW_PLUS] = lw_params_um_to_usteps(params, params->switch_plus_um);
+	result.switch_usteps[LW_MINUS] = lw_params_um_to_usteps(params, params->switch_minus_um);
+	result.switch_tolerance_usteps =
+		lw_params_um_to_usteps(params, params->switch_tolerance_um);
+	result.switch_hysteresis_usteps =
+		lw_params_um_to_usteps(params, params->switch_hysteresis_um);
+	result.span_tolerance_usteps = lw_params_um_to_usteps(params, params->span_tolerance_um);
+	result.travel_usteps = lw_params_um_to_usteps(params, (int32_t)params->travel_um);
+	result.park_usteps = lw_params_um_to_usteps(params, params->park_position_um);
+	result.centre_usteps = lw_params_um_to_usteps(params, params->centre_position_um);
+
+	ret = check_geometry(params, &result, why);
+	if (ret == 0) {
+		ret = check_motion(params, &result, why);
+	}
+	if (ret == 0) {
+		*derived = result;
+	}
+	return ret;
+}
+
+int lw_params_check_trim(const struct lw_params *params, const struct lw_derived *derived,
+			 int32_t trim_plus_um, int32_t trim_minus_um, struct lw_refusal *why)
+{
+	struct lw_derived trimmed = *derived;
+
+	reversals(params, trim_plus_um, trim_minus_um, &trimmed.reversal_plus_usteps,
+		  &trimmed.reversal_minus_usteps);
+	return check_geometry(params, &trimmed, why);
+}
+
+struct lw_law_window lw_params_window(const struct lw_params *params,
+				      const struct lw_derived *derived, int32_t trim_plus_um,
+				      int32_t trim_minus_um)
+{
+	int32_t plus_usteps;
+	int32_t minus_usteps;
+
+	reversals(params, trim_plus_um, trim_minus_um, &plus_usteps, &minus_usteps);
+	return (struct lw_law_window){
+		.ka = derived->ka,
+		.ks = derived->ks,
+		.sweep_begin = (minus_usteps + 1) * LW_USTEP,
+		.sweep_end = plus_usteps * LW_USTEP,
+		.dwell_plus_edges = derived->dwell_plus_edges,
+		.dwell_minus_edges = derived->dwell_minus_edges,
+	};
+}
+
+struct lw_quadrature_config lw_params_quadrature(const struct lw_params *params)
+{
+	return (struct lw_quadrature_config){
+		.edges_per_pulse = (uint8_t)params->encoder_edges_per_pulse,
+		.invert_a = params->encoder_invert_a,
+		.invert_b = params->encoder_invert_b,
+		.invert_direction = params->drum_direction_invert,
+	};
+}
+
+struct lw_limit_switch_config lw_params_limit_switch(const struct lw_params *params)
+{
+	return (struct lw_limit_switch_config){
+		.contacts = (enum lw_switch_contacts)params->switch_contacts,
+		.transit_us = (uint32_t)params->switch_transit_ms * 1000,
+		.debounce_us = (uint32_t)params->switch_debounce_ms * 1000,
+	};
+}
+
+bool lw_params_need_index(const struct lw_params *from, const struct lw_params *to)
+{
+	for (size_t i = 0; i < LW_MAP_PARAMS_COUNT; i++) {
+		const struct lw_point *point = &lw_map_params[i];
+
+		if ((point->flags & LW_POINT_REINDEX) &&
+		    memcmp((const char *)from + point->offset, (const char *)to + point->offset,
+			   sizeof(int32_t)) != 0) {
+			return true;
+		}
+	}
+	return false;
+}

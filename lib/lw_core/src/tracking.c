@@ -1,0 +1,134 @@
+#include "controller_internal.h"
+
+/** How far the carriage is inward of where a switch must have triggered again on the way back. */
+static bool surely_inward(const struct lw_controller *controller, int side)
+{
+	const struct lw_derived *derived = controller->derived;
+	const int32_t pos_usteps = lw_law_pos_usteps(controller->motion.law.m);
+
+	return lw_side_direction(side) * (derived->switch_usteps[side] - pos_usteps) >
+	       derived->switch_tolerance_usteps + derived->switch_hysteresis_usteps;
+}
+
+static bool in_reversal(const struct lw_controller *controller, int side)
+{
+	return lw_law_region(controller->motion.window, controller->motion.law.m) ==
+	       -lw_side_direction(side);
+}
+
+void lw_tracking_start(struct lw_controller *controller)
+{
+	struct lw_motion *motion = &controller->motion;
+
+	if (!controller->on_orbit) {
+		*lw_controller_spare_window(controller) = lw_controller_track_window(controller);
+		motion->window = lw_controller_spare_window(controller);
+		motion->requests = 0;
+		motion->law.u = controller->params->handover_direction == LW_SIDE_PLUS
+					? controller->derived->ks
+					: -controller->derived->ks;
+		motion->law.dwell_edges = 0;
+	}
+	controller->on_orbit = false;
+	controller->los_recoveries = 0;
+	for (int side = 0; side < 2; side++) {
+		controller->seen[side] = !surely_inward(controller, side);
+		controller->visiting[side] = in_reversal(controller, side);
+	}
+	motion->reached = 0;
+	motion->pattern_edges = 0;
+	motion->stop_at_rest = 0;
+	controller->state = LW_STATE_TRACKING;
+	motion->source = LW_EDGE_SOURCE_ENCODER;
+}
+
+void lw_tracking_leave(struct lw_controller *controller)
+{
+	struct lw_motion *motion = &controller->motion;
+	const int32_t correction_usteps = motion->requests & LW_MOTION_REQUEST_CORRECTION
+						  ? motion->request_correction_usteps
+						  : 0;
+
+	lw_controller_cut(controller);
+	/* Out of the pattern a held correction can be made at once. */
+	motion->law.m += correction_usteps * LW_USTEP;
+	motion->law.u = 0;
+	motion->law.dwell_edges = 0;
+}
+
+static void record(const struct lw_controller *controller, struct lw_los_record *record,
+		   int32_t position_q16)
+{
+	if (!record->set) {
+		record->position_q16 = position_q16;
+		record->time_ms = (uint32_t)(controller->now_us / 1000);
+	}
+	record->set = true;
+	if (record->count < UINT16_MAX) {
+		record->count++;
+	}
+}
+
+/** A switch triggered on the way to its reversal: is it where it was calibrated? */
+static void judge_trigger(struct lw_controller *controller, int side, int32_t pos_usteps)
+{
+	const struct lw_derived *derived = controller->derived;
+	const int32_t error = pos_usteps - derived->switch_usteps[side];
+	const int32_t recoveries_max = controller->params->los_recoveries_max;
+	struct lw_motion *motion = &controller->motion;
+
+	controller->seen[side] = true;
+	if (error <= derived->switch_tolerance_usteps &&
+	    error >= -derived->switch_tolerance_usteps) {
+		return;
+	}
+
+	record(controller, &controller->los2[side], pos_usteps * LW_USTEP);
+	if (controller->los_recoveries < UINT16_MAX) {
+		controller->los_recoveries++;
+	}
+	if (recoveries_max > 0 && controller->los_recoveries > recoveries_max) {
+		lw_controller_fail(controller, LW_FAULT_LOS_LIMIT);
+		return;
+	}
+	/* Withdraw an older correction first: this one replaces it. */
+	motion->requests &= (uint8_t)~LW_MOTION_REQUEST_CORRECTION;
+	motion->request_correction_usteps = -error;
+	motion->requests |= LW_MOTION_REQUEST_CORRECTION;
+}
+
+/** Has a reversal been entered whose switch did not trigger on the way? */
+static void judge_reversal(struct lw_controller *controller, int side)
+{
+	struct lw_motion *motion = &controller->motion;
+	const uint8_t bit = side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS;
+	const bool reached = motion->reached & bit;
+
+	motion->reached &= (uint8_t)~bit;
+	if (!reached && !in_reversal(controller, side)) {
+		controller->visiting[side] = false;
+	} else if (reached && !controller->visiting[side]) {
+		controller->visiting[side] = true;
+		if (!controller->seen[side]) {
+			record(controller, &controller->los1[side], motion->law.m);
+		}
+	}
+	if (surely_inward(controller, side)) {
+		controller->seen[side] = false;
+	}
+}
+
+void lw_tracking_tick(struct lw_controller *controller,
+		      const struct lw_controller_trigger *triggers)
+{
+	for (int side = 0; side < 2; side++) {
+		/* A trigger counts only when the carriage moves toward its switch. */
+		if (triggers[side].taken &&
+		    lw_controller_moves_toward(triggers[side].at.direction, side)) {
+			judge_trigger(controller, side, triggers[side].at.pos_usteps);
+		}
+	}
+	for (int side = 0; side < 2 && controller->state == LW_STATE_TRACKING; side++) {
+		judge_reversal(controller, side);
+	}
+}

@@ -1,0 +1,158 @@
+/**
+ * @file
+ * @brief Motor, screw and carriage.
+ *
+ * The rotor hangs in the motor's field as a pendulum in gravity: the field pulls with the sine of
+ * the electrical angle between the two, weaker the faster the motor turns. Following, lagging,
+ * pull-out, slipping, and falling back in at a slow field all come from this one equation.
+ */
+#include <math.h>
+
+#include "plant_internal.h"
+
+#define UM_PER_MM                        1000.0
+#define TWO_PI                           6.283185307179586
+#define FULL_STEPS_PER_ELECTRICAL_PERIOD 4.0
+
+/** The field's speed is seen through a low-pass filter, so that a single step is no hammer blow. */
+#define FIELD_SPEED_TIME_CONSTANT_S 1e-3
+
+void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
+			    const struct lw_plant_config *config)
+{
+	double usteps_per_um = (double)config->usteps_per_rev / config->screw_lead_um;
+	double usteps_per_mm = usteps_per_um * UM_PER_MM;
+	double period = FULL_STEPS_PER_ELECTRICAL_PERIOD * config->usteps_per_rev /
+			config->full_steps_per_rev;
+	double holding_acceleration = config->holding_acceleration_mm_per_s2 * usteps_per_mm;
+	/* Small oscillation about the field: omega^2 = d(a0 * sin(2 pi x / period)) / dx. */
+	double natural_rad_per_s = sqrt(holding_acceleration * TWO_PI / period);
+
+	*carriage = (struct lw_plant_carriage){
+		.commanded_usteps = llround(config->start_um * usteps_per_um),
+		.last_commanded_usteps = llround(config->start_um * usteps_per_um),
+		.position_usteps = config->start_um * usteps_per_um,
+		.period_usteps = period,
+		.holding_usteps_per_s2 = holding_acceleration,
+		.half_torque_usteps_per_s = config->half_torque_speed_mm_per_s * usteps_per_mm,
+		.damping_per_s = 2.0 * config->damping_ratio * natural_rad_per_s,
+		.friction_usteps_per_s2 = config->friction_mm_per_s2 * usteps_per_mm,
+		.flange_usteps = config->flange_um * usteps_per_um,
+		.usteps_per_um = usteps_per_um,
+		.reversed = config->carriage_reversed,
+	};
+}
+
+/**
+ * Acceleration by the field. Damping acts through the field too, hence the cosine: it holds the
+ * rotor in step, but gives a rotor that slips nothing on average, and never more than the field
+ * has.
+ */
+static double field_acceleration(const struct lw_plant_carriage *carriage)
+{
+	double lag = (double)carriage->commanded_usteps - carriage->position_usteps -
+		     (double)carriage->pole * carriage->period_usteps;
+	double angle = lag * TWO_PI / carriage->period_usteps;
+	double most = carriage->holding_usteps_per_s2;
+	double pull = most * sin(angle) +
+		      carriage->damping_per_s * cos(angle) *
+			      (carriage->field_usteps_per_s - carriage->speed_usteps_per_s);
+
+	pull = fmin(fmax(pull, -most), most);
+	return pull /
+	       (1.0 + fabs(carriage->speed_usteps_per_s) / carriage->half_torque_usteps_per_s);
+}
+
+int64_t lw_plant_carriage_pole(const struct lw_plant_carriage *carriage, double position_usteps)
+{
+	return llround(((double)carriage->commanded_usteps - position_usteps) /
+		       carriage->period_usteps);
+}
+
+static void count_pole_slips(struct lw_plant_carriage *carriage)
+{
+	double lag = (double)carriage->commanded_usteps - carriage->position_usteps -
+		     (double)carriage->pole * carriage->period_usteps;
+
+	if (fabs(lag) > carriage->period_usteps / 2.0) {
+		int64_t pole = lw_plant_carriage_pole(carriage, carriage->position_usteps);
+		int64_t slips = pole - carriage->pole;
+
+		carriage->pole_slips += (uint64_t)(slips < 0 ? -slips : slips);
+		carriage->pole = pole;
+	}
+}
+
+void lw_plant_carriage_substep(struct lw_plant_carriage *carriage, uint64_t begin_ns)
+{
+	double steps = (double)(carriage->commanded_usteps - carriage->last_commanded_usteps);
+
+	carriage->position_usteps += carriage->path_usteps_per_s * SUBSTEP_S;
+	carriage->last_commanded_usteps = carriage->commanded_usteps;
+	carriage->field_usteps_per_s += (steps / SUBSTEP_S - carriage->field_usteps_per_s) *
+					SUBSTEP_S / FIELD_SPEED_TIME_CONSTANT_S;
+	count_pole_slips(carriage);
+	if (begin_ns < carriage->stall_end_ns) {
+		carriage->speed_usteps_per_s = 0.0;
+		carriage->path_usteps_per_s = 0.0;
+		return;
+	}
+
+	double acceleration = carriage->side_load_usteps_per_s2;
+
+	if (carriage->enabled) {
+		acceleration += field_acceleration(carriage);
+	}
+
+	/* Friction takes speed away but cannot reverse it; what it takes wholly stands still. */
+	double speed = carriage->speed_usteps_per_s + acceleration * SUBSTEP_S;
+
+	speed = copysign(fmax(fabs(speed) - carriage->friction_usteps_per_s2 * SUBSTEP_S, 0.0),
+			 speed);
+
+	double room = copysign(carriage->flange_usteps, speed) - carriage->position_usteps;
+
+	if (fabs(speed) * SUBSTEP_S < fabs(room)) {
+		carriage->speed_usteps_per_s = speed;
+		carriage->path_usteps_per_s = speed;
+	} else {
+		carriage->speed_usteps_per_s = 0.0;
+		carriage->path_usteps_per_s = room / SUBSTEP_S;
+	}
+}
+
+double lw_plant_carriage_usteps(const struct lw_plant *plant)
+{
+	double elapsed_s = (double)(plant->now_ns - substep_begin_ns(plant)) * S_PER_NS;
+
+	return plant->carriage.position_usteps + plant->carriage.path_usteps_per_s * elapsed_s;
+}
+
+void lw_plant_carriage_halt(struct lw_plant *plant, double position_usteps)
+{
+	plant->carriage.position_usteps = position_usteps;
+	plant->carriage.speed_usteps_per_s = 0.0;
+	plant->carriage.path_usteps_per_s = 0.0;
+}
+
+void lw_plant_step(struct lw_plant *plant, int direction)
+{
+	plant->carriage.commanded_usteps += plant->carriage.reversed ? -direction : direction;
+	plant->carriage.step_pulses++;
+}
+
+void lw_plant_enable(struct lw_plant *plant, bool enabled)
+{
+	plant->carriage.enabled = enabled;
+}
+
+void lw_plant_reference(struct lw_plant *plant)
+{
+	struct lw_plant_carriage *carriage = &plant->carriage;
+	int64_t pole = lw_plant_carriage_pole(carriage, lw_plant_carriage_usteps(plant));
+	int64_t slipped = pole * (int64_t)carriage->period_usteps;
+
+	carriage->commanded_usteps -= slipped;
+	carriage->last_commanded_usteps -= slipped;
+	carriage->pole -= pole;
+}

@@ -1,0 +1,228 @@
+/**
+ * @file
+ * @brief The drum and its encoder.
+ *
+ * The speed is constant over a substep, the mean of its values at both ends, so that the position
+ * at the ends is exact for linear speeds and a transition costs one addition.
+ */
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "plant_internal.h"
+
+#define TRANSITIONS_PER_PULSE          4
+#define TRANSITIONS_PER_ILLEGAL_CHANGE 2
+#define MILLI_RPM_PER_RPM              1000.0
+#define MILLI_RPM_S_PER_REV            60000.0
+
+void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config *config)
+{
+	double transitions_per_rev =
+		(double)TRANSITIONS_PER_PULSE * config->encoder_pulses_per_rev *
+		config->encoder_revs_per_drum_rev_num / config->encoder_revs_per_drum_rev_den;
+
+	*drum = (struct lw_plant_drum){
+		.transition_ns = LW_PLANT_NEVER_NS,
+		.dither_ns = LW_PLANT_NEVER_NS,
+		.transitions_per_milli_rpm_s = transitions_per_rev / MILLI_RPM_S_PER_REV,
+		.acceleration_milli_rpm_per_s =
+			config->drum_acceleration_rpm_per_s * MILLI_RPM_PER_RPM,
+		/* Half-way between two transitions: a fresh encoder does not sit on an edge. */
+		.fraction = 0.5,
+	};
+}
+
+/** The profile's speed at a time; the profile ends with its last point. */
+static double profile_milli_rpm(struct lw_plant_drum *drum, uint64_t time_ns)
+{
+	const struct lw_plant_profile_point *point = &drum->profile[drum->profile_index];
+	uint64_t elapsed_ns = time_ns - drum->profile_start_ns;
+
+	while (drum->profile_index + 1 < drum->profile_count &&
+	       elapsed_ns >= (uint64_t)point[1].time_ms * NS_PER_MS) {
+		drum->profile_index++;
+		point++;
+	}
+	if (drum->profile_index + 1 == drum->profile_count &&
+	    elapsed_ns >= (uint64_t)point->time_ms * NS_PER_MS) {
+		drum->target_milli_rpm = point->drum_milli_rpm;
+		drum->profile = NULL;
+		return point->drum_milli_rpm;
+	}
+
+	uint64_t begin_ns = (uint64_t)point->time_ms * NS_PER_MS;
+
+	if (elapsed_ns <= begin_ns) {
+		return point->drum_milli_rpm;
+	}
+
+	double part = (double)(elapsed_ns - begin_ns) /
+		      ((double)(point[1].time_ms - point->time_ms) * NS_PER_MS);
+
+	return point->drum_milli_rpm +
+	       part * ((double)point[1].drum_milli_rpm - point->drum_milli_rpm);
+}
+
+static double next_speed_milli_rpm(struct lw_plant_drum *drum, uint64_t begin_ns)
+{
+	if (drum->profile != NULL) {
+		if (begin_ns == drum->profile_start_ns) {
+			drum->speed_milli_rpm = drum->profile[0].drum_milli_rpm;
+		}
+		return profile_milli_rpm(drum, begin_ns + LW_PLANT_SUBSTEP_NS);
+	}
+
+	double most = drum->acceleration_milli_rpm_per_s * SUBSTEP_S;
+	double missing = drum->target_milli_rpm - drum->speed_milli_rpm;
+
+	return fabs(missing) <= most ? drum->target_milli_rpm
+				     : drum->speed_milli_rpm + copysign(most, missing);
+}
+
+static void plan_transition(struct lw_plant_drum *drum, uint64_t begin_ns)
+{
+	drum->transition_ns = drum->offset_ns < LW_PLANT_SUBSTEP_NS
+				      ? begin_ns + (uint32_t)drum->offset_ns
+				      : LW_PLANT_NEVER_NS;
+}
+
+void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
+{
+	double end_milli_rpm = next_speed_milli_rpm(drum, begin_ns);
+	double mean_milli_rpm = (drum->speed_milli_rpm + end_milli_rpm) / 2.0;
+
+	drum->fraction += drum->moved_transitions;
+	drum->speed_milli_rpm = end_milli_rpm;
+	drum->moved_transitions = mean_milli_rpm * drum->transitions_per_milli_rpm_s * SUBSTEP_S;
+	if (drum->moved_transitions == 0.0) {
+		drum->transition_ns = LW_PLANT_NEVER_NS;
+		return;
+	}
+
+	/* The last substep's transitions can have missed its end by a rounding error: fmax. */
+	bool forward = drum->moved_transitions > 0.0;
+	double missing = fmax(forward ? 1.0 - drum->fraction : drum->fraction, 0.0);
+
+	drum->direction = forward ? 1 : -1;
+	drum->period_ns = LW_PLANT_SUBSTEP_NS / fabs(drum->moved_transitions);
+	drum->offset_ns = missing * drum->period_ns;
+	plan_transition(drum, begin_ns);
+}
+
+/** A leads B for rising positions: 00, 10, 11, 01. */
+static uint32_t show(struct lw_plant *plant, int64_t transitions)
+{
+	uint32_t shown = (uint32_t)(transitions + plant->drum.dithered);
+	bool a = ((shown ^ (shown >> 1)) & 1u) != 0;
+	bool b = ((shown >> 1) & 1u) != 0;
+	uint32_t changed = 0;
+
+	if (a != plant->pins.encoder_a) {
+		changed |= LW_PLANT_ENCODER_A;
+	}
+	if (b != plant->pins.encoder_b) {
+		changed |= LW_PLANT_ENCODER_B;
+	}
+	plant->pins.encoder_a = a;
+	plant->pins.encoder_b = b;
+	return changed;
+}
+
+/**
+ * While a fault hides transitions the pins hold a past position, until the drum is a whole number
+ * of pulses (nothing to see), or two transitions (both channels change), away from it.
+ */
+static int64_t shown_transitions(struct lw_plant_drum *drum)
+{
+	if (drum->lose_pulses == 0 && drum->illegal_changes == 0) {
+		return drum->transitions;
+	}
+
+	int64_t distance = llabs(drum->transitions - drum->held_transitions);
+
+	if (drum->lose_pulses > 0 && distance >= TRANSITIONS_PER_PULSE) {
+		drum->lose_pulses--;
+		drum->held_transitions = drum->transitions;
+	} else if (drum->lose_pulses == 0 && distance >= TRANSITIONS_PER_ILLEGAL_CHANGE) {
+		drum->illegal_changes--;
+		drum->held_transitions = drum->transitions;
+	}
+	return drum->held_transitions;
+}
+
+uint32_t lw_plant_drum_transition(struct lw_plant *plant)
+{
+	struct lw_plant_drum *drum = &plant->drum;
+
+	drum->transitions += drum->direction;
+	drum->fraction -= drum->direction;
+	drum->offset_ns += drum->period_ns;
+	plan_transition(drum, substep_begin_ns(plant));
+	return show(plant, shown_transitions(drum));
+}
+
+uint32_t lw_plant_drum_dither(struct lw_plant *plant)
+{
+	struct lw_plant_drum *drum = &plant->drum;
+
+	if (drum->dither_changes == 0) {
+		drum->dither_ns = LW_PLANT_NEVER_NS;
+		return 0;
+	}
+	drum->dither_changes--;
+	drum->dithered = !drum->dithered;
+	drum->dither_ns = plant->now_ns + DITHER_INTERVAL_NS;
+	return show(plant, shown_transitions(drum));
+}
+
+static bool milli_rpm_in_range(int32_t drum_milli_rpm)
+{
+	return drum_milli_rpm >= -LW_PLANT_DRUM_MILLI_RPM_MAX &&
+	       drum_milli_rpm <= LW_PLANT_DRUM_MILLI_RPM_MAX;
+}
+
+int lw_plant_drum_target(struct lw_plant *plant, int32_t drum_milli_rpm)
+{
+	if (!milli_rpm_in_range(drum_milli_rpm)) {
+		return -ERANGE;
+	}
+	plant->drum.profile = NULL;
+	plant->drum.target_milli_rpm = drum_milli_rpm;
+	return 0;
+}
+
+int lw_plant_drum_acceleration(struct lw_plant *plant, double drum_rpm_per_s)
+{
+	if (!isfinite(drum_rpm_per_s) || drum_rpm_per_s <= 0.0) {
+		return -ERANGE;
+	}
+	plant->drum.acceleration_milli_rpm_per_s = drum_rpm_per_s * MILLI_RPM_PER_RPM;
+	return 0;
+}
+
+int lw_plant_drum_play(struct lw_plant *plant, const struct lw_plant_profile_point *points,
+		       size_t count)
+{
+	if (count < 1 || count > LW_PLANT_PROFILE_POINTS_MAX) {
+		return -EINVAL;
+	}
+	for (size_t i = 0; i < count; i++) {
+		if (i > 0 && points[i].time_ms <= points[i - 1].time_ms) {
+			return -EINVAL;
+		}
+		if (!milli_rpm_in_range(points[i].drum_milli_rpm)) {
+			return -ERANGE;
+		}
+	}
+	plant->drum.profile = points;
+	plant->drum.profile_count = count;
+	plant->drum.profile_index = 0;
+	plant->drum.profile_start_ns = plant->substep_ns;
+	return 0;
+}
+
+bool lw_plant_drum_playing(const struct lw_plant *plant)
+{
+	return plant->drum.profile != NULL;
+}

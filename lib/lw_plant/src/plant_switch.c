@@ -1,0 +1,100 @@
+/**
+ * @file
+ * @brief Switches: where the pole moves, and how its contacts open, travel, close and bounce.
+ */
+#include "plant_internal.h"
+
+void lw_plant_switch_init(struct lw_plant_switch *contact, double position_usteps)
+{
+	contact->actuated = contact->outward * position_usteps >= contact->trigger_usteps;
+	contact->closed = true;
+	contact->pole_ns = LW_PLANT_NEVER_NS;
+	contact->contact_ns = LW_PLANT_NEVER_NS;
+}
+
+void lw_plant_switch_plan(struct lw_plant_switch *contact, const struct lw_plant *plant,
+			  double position_usteps, double remaining_s)
+{
+	contact->pole_ns = LW_PLANT_NEVER_NS;
+	if (contact->fault == LW_PLANT_SWITCH_STUCK_RELEASED ||
+	    contact->fault == LW_PLANT_SWITCH_STUCK_ACTUATED) {
+		if (contact->actuated != (contact->fault == LW_PLANT_SWITCH_STUCK_ACTUATED)) {
+			contact->pole_ns = plant->now_ns;
+		}
+		return;
+	}
+
+	/* Distance and speed towards the point where the pole would change over. */
+	double point =
+		contact->trigger_usteps - (contact->actuated ? plant->hysteresis_usteps : 0.0);
+	int towards = contact->actuated ? -contact->outward : contact->outward;
+	double distance = towards * (contact->outward * point - position_usteps);
+	double speed = towards * plant->carriage.path_usteps_per_s;
+
+	if (speed > 0.0) {
+		distance += speed * contact->shift_s;
+	}
+	if (distance <= 0.0) {
+		contact->pole_ns = plant->now_ns;
+	} else if (distance <= speed * remaining_s) {
+		contact->pole_ns = plant->now_ns + (uint64_t)(distance / speed / S_PER_NS);
+	}
+}
+
+static void plan_bounce(struct lw_plant *plant, struct lw_plant_switch *contact)
+{
+	uint32_t mean_ns = plant->bounce_interval_ns;
+	uint64_t next_ns = plant->now_ns + mean_ns / 2 + lw_plant_random(plant, mean_ns);
+
+	if (next_ns < contact->bounce_end_ns) {
+		contact->contact_ns = next_ns;
+	} else {
+		contact->contact_ns = contact->closed ? LW_PLANT_NEVER_NS : contact->bounce_end_ns;
+	}
+}
+
+void lw_plant_switch_run(struct lw_plant *plant, struct lw_plant_switch *contact)
+{
+	if (contact->pole_ns <= plant->now_ns) {
+		contact->pole_ns = LW_PLANT_NEVER_NS;
+		contact->actuated = !contact->actuated;
+		contact->closed = false;
+		contact->contact_ns = plant->now_ns + contact->transit_ns;
+		contact->bounce_end_ns = contact->contact_ns + contact->bounce_ns;
+	}
+	if (contact->contact_ns <= plant->now_ns) {
+		contact->closed = !contact->closed;
+		plan_bounce(plant, contact);
+	}
+}
+
+uint32_t lw_plant_switch_pins(struct lw_plant *plant)
+{
+	uint32_t changed = 0;
+
+	for (int side = 0; side < LW_PLANT_SIDES; side++) {
+		const struct lw_plant_switch *contact = &plant->limit[side];
+		bool shorted = contact->fault == LW_PLANT_SWITCH_SHORTED;
+		bool no_closed = contact->actuated && contact->closed &&
+				 contact->fault != LW_PLANT_SWITCH_NO_BROKEN;
+		bool nc_closed = !contact->actuated && contact->closed &&
+				 contact->fault != LW_PLANT_SWITCH_NC_BROKEN;
+
+		no_closed = no_closed || shorted;
+		nc_closed = nc_closed || shorted;
+		if (no_closed != plant->pins.limit[side].no_closed ||
+		    nc_closed != plant->pins.limit[side].nc_closed) {
+			changed |= (uint32_t)LW_PLANT_LIMIT_PLUS << side;
+		}
+		plant->pins.limit[side].no_closed = no_closed;
+		plant->pins.limit[side].nc_closed = nc_closed;
+
+		bool overtravel = plant->overtravel[side].actuated;
+
+		if (overtravel != plant->pins.overtravel[side]) {
+			changed |= (uint32_t)LW_PLANT_OVERTRAVEL_PLUS << side;
+		}
+		plant->pins.overtravel[side] = overtravel;
+	}
+	return changed;
+}

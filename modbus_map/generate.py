@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""Generate everything that is made from the Modbus map, modbus_map/registers.yaml.
+
+python3 modbus_map/generate.py           write the files
+python3 modbus_map/generate.py --check   exit 1 if a file is not what would be written
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import emit_client
+import emit_core
+import emit_documents
+import emit_python
+from map_model import MapError, load
+
+ROOT = Path(__file__).resolve().parent.parent
+OUTPUTS = {
+    "lib/lw_core/generated/lw/map.h": emit_core.map_h,
+    "lib/lw_core/generated/map.c": emit_core.map_c,
+    "host_tools/python/src/levelwind/map_table.py": emit_python.map_table,
+    "host_tools/c/generated/levelwind_map.h": emit_client.map_h,
+    "host_tools/c/generated/levelwind_map.c": emit_client.map_c,
+    "doc/registers.md": emit_documents.registers_md,
+    "modbus_map/tags.csv": emit_documents.tags_csv,
+}
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", action="store_true", help="write nothing, compare only")
+    check = parser.parse_args().check
+    try:
+        map_ = load()
+    except MapError as error:
+        for line in error.args:
+            print(f"modbus_map/registers.yaml: {line}", file=sys.stderr)
+        return 1
+
+    drifted = False
+    for name, emit in OUTPUTS.items():
+        path = ROOT / name
+        content = emit(map_).encode("ascii")
+        if path.exists() and path.read_bytes() == content:
+            continue
+        if check:
+            print(
+                f"{name} is not what modbus_map/registers.yaml makes. "
+                "Run: python3 modbus_map/generate.py",
+                file=sys.stderr,
+            )
+            drifted = True
+        else:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+            print(f"wrote {name}")
+    return 1 if drifted else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,428 @@
+/*
+ * The simulator: a world on a real or virtual clock, its Modbus slave on a pseudo terminal or a
+ * serial port. One thread. It is not Zephyr; it runs the same core.
+ */
+#define _GNU_SOURCE
+
+#include <errno.h>
+#include <fcntl.h>
+#include <getopt.h>
+#include <libgen.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "port.h"
+#include "world.h"
+
+/** Virtual time simulated between two looks at the port. */
+#define CHUNK_NS 2000000u
+
+/** Real time that the simulator may fall behind before it gives up catching up. */
+#define LAG_MAX_NS 200000000u
+
+/**
+ * Silence that ends a frame on a pseudo terminal. There are no character times there; a frame
+ * comes in one write, or in a few close together.
+ */
+#define PTY_SILENCE_US 2000u
+
+struct options {
+	const char *port;
+	const char *storage;
+	const char *trace;
+	double speed; /**< 0: as fast as it can */
+	uint64_t seed;
+	int32_t carriage_um;
+	uint8_t unit_id;
+};
+
+struct simulator {
+	struct options options;
+	struct lw_port port;
+	FILE *trace;
+	int64_t traced_edges;
+	uint32_t traced_steps;
+	int traced_state;
+	struct lw_world world;
+};
+
+static volatile sig_atomic_t stop_signal;
+
+static void on_signal(int number)
+{
+	stop_signal = number;
+}
+
+static uint64_t real_ns(void)
+{
+	struct timespec now;
+
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+static void usage(FILE *stream)
+{
+	fputs("usage: lw_sim --port PATH [--speed FACTOR|max] [--seed N] [--storage FILE]\n"
+	      "              [--trace FILE.csv] [--unit N] [--carriage-um N]\n"
+	      "\n"
+	      "  --port PATH      serial port to answer on, or where to make a link to a pseudo "
+	      "terminal\n"
+	      "  --speed FACTOR   virtual seconds per real second (default 1), or max\n"
+	      "  --seed N         seed of everything random in the plant (default 1)\n"
+	      "  --storage FILE   where saved parameters are kept (default: in memory)\n"
+	      "  --trace FILE     write one line per millisecond in which something moves\n"
+	      "  --unit N         Modbus unit id (default: the stored one, at first 1)\n"
+	      "  --carriage-um N  where the carriage stands at first (default 0)\n",
+	      stream);
+}
+
+/** A whole decimal number within limits, or an error message and false. */
+static bool parse_number(const char *name, const char *text, long long min, long long max,
+			 long long *value)
+{
+	char *end;
+
+	errno = 0;
+	*value = strtoll(text, &end, 0);
+	if (errno != 0 || *text == '\0' || *end != '\0' || *value < min || *value > max) {
+		fprintf(stderr, "lw_sim: --%s %s: must be a number from %lld to %lld\n", name, text,
+			min, max);
+		return false;
+	}
+	return true;
+}
+
+static bool parse_speed(const char *text, double *speed)
+{
+	char *end;
+
+	if (strcmp(text, "max") == 0) {
+		*speed = 0;
+		return true;
+	}
+	*speed = strtod(text, &end);
+	if (*text == '\0' || *end != '\0' || !(*speed >= 0.01 && *speed <= 1000)) {
+		fprintf(stderr, "lw_sim: --speed %s: must be from 0.01 to 1000, or max\n", text);
+		return false;
+	}
+	return true;
+}
+
+static bool parse_options(int argc, char **argv, struct options *options)
+{
+	static const struct option names[] = {
+		{"port", required_argument, NULL, 'p'},
+		{"speed", required_argument, NULL, 's'},
+		{"seed", required_argument, NULL, 'r'},
+		{"storage", required_argument, NULL, 'f'},
+		{"trace", required_argument, NULL, 't'},
+		{"unit", required_argument, NULL, 'u'},
+		{"carriage-um", required_argument, NULL, 'c'},
+		{"help", no_argument, NULL, 'h'},
+		{NULL, 0, NULL, 0},
+	};
+	long long number;
+	int name;
+
+	*options = (struct options){.speed = 1, .seed = 1};
+	while ((name = getopt_long(argc, argv, "h", names, NULL)) != -1) {
+		switch (name) {
+		case 'p':
+			options->port = optarg;
+			break;
+		case 's':
+			if (!parse_speed(optarg, &options->speed)) {
+				return false;
+			}
+			break;
+		case 'r':
+			if (!parse_number("seed", optarg, 0, INT64_MAX, &number)) {
+				return false;
+			}
+			options->seed = (uint64_t)number;
+			break;
+		case 'f':
+			options->storage = optarg;
+			break;
+		case 't':
+			options->trace = optarg;
+			break;
+		case 'u':
+			if (!parse_number("unit", optarg, 1, 247, &number)) {
+				return false;
+			}
+			options->unit_id = (uint8_t)number;
+			break;
+		case 'c':
+			if (!parse_number("carriage-um", optarg, -1000000, 1000000, &number)) {
+				return false;
+			}
+			options->carriage_um = (int32_t)number;
+			break;
+		case 'h':
+			usage(stdout);
+			exit(EXIT_SUCCESS);
+		default:
+			usage(stderr);
+			return false;
+		}
+	}
+	if (options->port == NULL || optind != argc) {
+		usage(stderr);
+		return false;
+	}
+	return true;
+}
+
+/** Make the name of a file durable: a rename is safe only once its folder is written. */
+static int sync_folder(const char *path)
+{
+	char copy[4096];
+	int folder;
+	int ret;
+
+	if (snprintf(copy, sizeof(copy), "%s", path) >= (int)sizeof(copy)) {
+		return -ENAMETOOLONG;
+	}
+	folder = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	if (folder < 0) {
+		return -errno;
+	}
+	ret = fsync(folder) ? -errno : 0;
+	close(folder);
+	return ret;
+}
+
+/** Replace the stored record: a power cut leaves the old one or the new one. */
+static int store_record(void *context, const uint8_t *record, size_t length)
+{
+	const struct simulator *simulator = context;
+	const char *path = simulator->options.storage;
+	char fresh[4096];
+	ssize_t written;
+	int fd;
+	int ret;
+
+	if (path == NULL) {
+		return 0;
+	}
+	if (snprintf(fresh, sizeof(fresh), "%s.new", path) >= (int)sizeof(fresh)) {
+		return -ENAMETOOLONG;
+	}
+	fd = open(fresh, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+	if (fd < 0) {
+		return -errno;
+	}
+	written = write(fd, record, length);
+	ret = written < 0 ? -errno : (size_t)written != length ? -EIO : fsync(fd) ? -errno : 0;
+	if (close(fd) && ret == 0) {
+		ret = -errno;
+	}
+	if (ret == 0 && rename(fresh, path)) {
+		ret = -errno;
+	}
+	return ret ? ret : sync_folder(path);
+}
+
+/** @return bytes read, 0 if there is no file, negative errno if it cannot be read */
+static ssize_t load_record(const char *path, uint8_t *record, size_t size)
+{
+	int fd = open(path, O_RDONLY | O_CLOEXEC);
+	ssize_t length;
+
+	if (fd < 0) {
+		return errno == ENOENT ? 0 : -errno;
+	}
+	length = read(fd, record, size);
+	if (length < 0) {
+		length = -errno;
+	}
+	close(fd);
+	return length;
+}
+
+static void trace(void *context)
+{
+	struct simulator *simulator = context;
+	struct lw_world *world = &simulator->world;
+	const struct lw_motion *motion = &world->device.controller.motion;
+	const int state = (int)world->device.controller.state;
+	struct lw_plant_truth truth;
+
+	if (simulator->trace == NULL ||
+	    (motion->net_edges == simulator->traced_edges &&
+	     motion->steps == simulator->traced_steps && state == simulator->traced_state)) {
+		return;
+	}
+	simulator->traced_edges = motion->net_edges;
+	simulator->traced_steps = motion->steps;
+	simulator->traced_state = state;
+	lw_plant_read_truth(&world->plant, &truth);
+	lw_device_refresh_status(&world->device);
+	fprintf(simulator->trace, "%llu,%d,%lld,%lld,%d,%d,%u,%.1f,%.0f,%u\n",
+		(unsigned long long)(world->now_ns / 1000000), state, (long long)motion->net_edges,
+		(long long)motion->pattern_edges, motion->law.m, motion->law.u, motion->steps,
+		truth.carriage_um, truth.drum_milli_rpm, world->device.status_image.flags);
+}
+
+/** Move bytes between the port and the slave. @return false if the port is gone. */
+static bool serve_port(struct simulator *simulator)
+{
+	struct lw_slave *slave = &simulator->world.device.slave;
+	uint8_t bytes[LW_RTU_FRAME_MAX];
+	const ssize_t count = lw_port_read(&simulator->port, bytes, sizeof(bytes));
+
+	if (count < 0) {
+		fprintf(stderr, "lw_sim: %s: the port is gone: %s\n", simulator->options.port,
+			strerror((int)-count));
+		return false;
+	}
+	if (count > 0) {
+		lw_slave_receive(slave, bytes, (size_t)count, real_ns() / 1000);
+	}
+
+	const size_t length = lw_slave_poll(slave, real_ns() / 1000, bytes);
+
+	if (length > 0) {
+		lw_port_write(&simulator->port, bytes, length);
+	}
+	return true;
+}
+
+/** Wait for bytes, the end of a frame, or the next chunk. */
+static void wait_until(struct simulator *simulator, uint64_t wake_ns)
+{
+	const uint64_t deadline_us = lw_slave_deadline_us(&simulator->world.device.slave);
+	const uint64_t now_ns = real_ns();
+	struct pollfd fd = {.fd = simulator->port.fd, .events = POLLIN};
+	struct timespec timeout;
+
+	if (deadline_us < wake_ns / 1000) {
+		wake_ns = deadline_us * 1000;
+	}
+	wake_ns = wake_ns > now_ns ? wake_ns - now_ns : 0;
+	timeout.tv_sec = (time_t)(wake_ns / 1000000000u);
+	timeout.tv_nsec = (long)(wake_ns % 1000000000u);
+	(void)ppoll(&fd, 1, &timeout, NULL);
+}
+
+static int run(struct simulator *simulator)
+{
+	struct lw_world *world = &simulator->world;
+	const double speed = simulator->options.speed;
+	uint64_t start_real_ns = real_ns();
+	uint64_t start_virtual_ns = world->now_ns;
+
+	while (!stop_signal) {
+		if (speed > 0) {
+			const uint64_t chunk_real_ns = (uint64_t)(CHUNK_NS / speed);
+			uint64_t elapsed_ns = real_ns() - start_real_ns;
+			uint64_t target_ns =
+				start_virtual_ns + (uint64_t)((double)elapsed_ns * speed);
+
+			if (target_ns > world->now_ns + (uint64_t)(LAG_MAX_NS * speed)) {
+				/* Hopelessly behind (a sleeping laptop): go on from here. */
+				start_real_ns = real_ns();
+				start_virtual_ns = world->now_ns;
+				target_ns = world->now_ns;
+			}
+			while (world->now_ns < target_ns && !stop_signal) {
+				const uint64_t chunk_ns = world->now_ns + CHUNK_NS;
+
+				lw_world_run(world, chunk_ns < target_ns ? chunk_ns : target_ns);
+				if (!serve_port(simulator)) {
+					return EXIT_FAILURE;
+				}
+			}
+			wait_until(simulator,
+				   real_ns() + (chunk_real_ns < 1000000 ? chunk_real_ns : 1000000));
+		} else {
+			lw_world_run(world, world->now_ns + CHUNK_NS);
+		}
+		if (!serve_port(simulator)) {
+			return EXIT_FAILURE;
+		}
+	}
+	return EXIT_SUCCESS;
+}
+
+int main(int argc, char **argv)
+{
+	static struct simulator simulator; /* large: off the stack */
+	const struct sigaction action = {.sa_handler = on_signal};
+	uint8_t record[LW_RECORD_SIZE + 1]; /* one more, so that a longer file is noticed */
+	struct lw_world_config config;
+	struct lw_port_line line;
+	ssize_t record_length = 0;
+	int ret;
+
+	if (!parse_options(argc, argv, &simulator.options)) {
+		return 2;
+	}
+	if (simulator.options.storage != NULL) {
+		record_length = load_record(simulator.options.storage, record, sizeof(record));
+		if (record_length < 0) {
+			fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.storage,
+				strerror((int)-record_length));
+			return EXIT_FAILURE;
+		}
+	}
+	if (simulator.options.trace != NULL) {
+		simulator.trace = fopen(simulator.options.trace, "w");
+		if (simulator.trace == NULL) {
+			fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.trace,
+				strerror(errno));
+			return EXIT_FAILURE;
+		}
+		fputs("time_ms,state,net_edges,pattern_edges,m,u,steps,carriage_um,drum_millirpm,"
+		      "flags\n",
+		      simulator.trace);
+	}
+
+	config = (struct lw_world_config){
+		.seed = simulator.options.seed,
+		.carriage_um = simulator.options.carriage_um,
+		.silence_us = lw_port_is_serial(simulator.options.port) ? 0 : PTY_SILENCE_US,
+		.unit_id = simulator.options.unit_id,
+		.record = record_length > 0 ? record : NULL,
+		.record_length = (size_t)record_length,
+		.context = &simulator,
+		.store = store_record,
+		.observe = trace,
+	};
+	if (lw_world_init(&simulator.world, &config, real_ns() / 1000)) {
+		fprintf(stderr, "lw_sim: --carriage-um %d: beyond the end stops\n",
+			simulator.options.carriage_um);
+		return EXIT_FAILURE;
+	}
+	line.baud = simulator.world.device.line.baud_rate;
+	line.format = (enum lw_line_format)simulator.world.device.line.line_format;
+	ret = lw_port_open(&simulator.port, simulator.options.port, line);
+	if (ret) {
+		fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.port,
+			ret == -EEXIST ? "exists and is neither a serial port nor a link"
+				       : strerror(-ret));
+		return EXIT_FAILURE;
+	}
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGTERM, &action, NULL);
+	sigaction(SIGHUP, &action, NULL);
+	printf("ready %s\n", simulator.options.port);
+	fflush(stdout);
+
+	ret = run(&simulator);
+	lw_port_close(&simulator.port);
+	if (simulator.trace != NULL && fclose(simulator.trace)) {
+		fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.trace, strerror(errno));
+		ret = EXIT_FAILURE;
+	}
+	return ret;
+}

@@ -1,0 +1,199 @@
+/*
+ * What Python calls by ctypes: the compiled law over runs of edges, the derivation of a parameter
+ * set, and a whole world for tests. This is host code: it may use the heap.
+ */
+#include <errno.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "lw/law.h"
+#include "lw/params.h"
+#include "world.h"
+
+/** A law to replay. Positions and slopes Q16.16 where not in microsteps. */
+struct lw_native_replay_setup {
+	int32_t ka;
+	int32_t nr;
+	int32_t lplus_usteps;
+	int32_t lminus_usteps;
+	int32_t m;
+	int32_t u;
+	int32_t dwell_plus_edges;
+	int32_t dwell_minus_edges;
+};
+
+/** What a replay ended with. */
+struct lw_native_replay_result {
+	int32_t m;
+	int32_t u;
+	int32_t dwell;
+	int32_t min_pos;
+	int32_t max_pos;
+	int64_t steps;  /**< net */
+	int64_t pulses; /**< all */
+	int64_t edges;
+	uint64_t trace_count;
+};
+
+/**
+ * Run the law over runs of edges, as the encoder interrupt does.
+ *
+ * @param runs edges of each run, positive forward, negative backward
+ * @param trace_pos receives the position before every trace_stride-th edge, or NULL
+ * @retval 0 done
+ * @retval -EINVAL parameters that could overflow, or a start that is not on the orbit's slope
+ * @retval -ERANGE a step larger than one, or a position beyond the range (a start off the orbit)
+ */
+int lw_native_replay(const struct lw_native_replay_setup *setup, const int32_t *runs,
+		     size_t run_count, struct lw_native_replay_result *result, int32_t *trace_pos,
+		     size_t trace_stride, size_t trace_capacity)
+{
+	const int64_t ks = (int64_t)setup->ka * setup->nr;
+	const int64_t overshoot_usteps = ks * (setup->nr - 1) / 2 / LW_USTEP + 2;
+	const int64_t reach_min = setup->lminus_usteps - overshoot_usteps;
+	const int64_t reach_max = setup->lplus_usteps + overshoot_usteps;
+
+	if (setup->ka < 1 || setup->nr < 1 || ks >= LW_USTEP ||
+	    setup->lplus_usteps - (int64_t)setup->lminus_usteps < 2 || reach_max > INT16_MAX ||
+	    reach_min < INT16_MIN || setup->u > ks || setup->u < -ks || setup->u % setup->ka != 0 ||
+	    setup->dwell_plus_edges < 0 || setup->dwell_minus_edges < 0 ||
+	    lw_law_pos_usteps(setup->m) < reach_min || lw_law_pos_usteps(setup->m) > reach_max) {
+		return -EINVAL;
+	}
+
+	const struct lw_law_window window = {
+		.ka = setup->ka,
+		.ks = (int32_t)ks,
+		.sweep_begin = (setup->lminus_usteps + 1) * LW_USTEP,
+		.sweep_end = setup->lplus_usteps * LW_USTEP,
+		.dwell_plus_edges = (uint32_t)setup->dwell_plus_edges,
+		.dwell_minus_edges = (uint32_t)setup->dwell_minus_edges,
+	};
+	struct lw_law law = {.m = setup->m, .u = setup->u};
+	const int32_t pos_start = lw_law_pos_usteps(law.m);
+
+	*result = (struct lw_native_replay_result){.min_pos = pos_start, .max_pos = pos_start};
+	for (size_t run = 0; run < run_count; run++) {
+		const int dd = runs[run] < 0 ? -1 : 1;
+		const int64_t edges = runs[run] < 0 ? -(int64_t)runs[run] : runs[run];
+
+		for (int64_t i = 0; i < edges; i++) {
+			const int32_t pos = lw_law_pos_usteps(law.m);
+
+			if (trace_pos != NULL && result->edges % (int64_t)trace_stride == 0 &&
+			    result->trace_count < trace_capacity) {
+				trace_pos[result->trace_count++] = pos;
+			}
+
+			const int step = lw_law_edge(&law, &window, dd);
+			const int32_t pos_after = lw_law_pos_usteps(law.m);
+
+			/* A start off the orbit runs away; end before it overflows. */
+			if (step > 1 || step < -1 || pos_after > INT16_MAX - 1 ||
+			    pos_after < INT16_MIN + 1) {
+				return -ERANGE;
+			}
+			result->edges++;
+			result->steps += step;
+			result->pulses += step != 0;
+			if (pos_after < result->min_pos) {
+				result->min_pos = pos_after;
+			}
+			if (pos_after > result->max_pos) {
+				result->max_pos = pos_after;
+			}
+		}
+	}
+	result->m = law.m;
+	result->u = law.u;
+	result->dwell = (int32_t)law.dwell_edges;
+	return 0;
+}
+
+/** The part of struct lw_derived that the tools show. */
+struct lw_native_derived {
+	int32_t ka;
+	int32_t nr;
+	int32_t ks;
+	int32_t reversal_plus_usteps;
+	int32_t reversal_minus_usteps;
+	int32_t slope_error_ppm;
+	int32_t overshoot_error_um;
+	int32_t overshoot_um;
+	uint32_t edges_per_1000_drum_revs;
+	uint32_t dwell_plus_edges;
+	uint32_t dwell_minus_edges;
+};
+
+/** lw_params_derive() for a set given as its values in the order of the map. */
+int lw_native_derive(const int32_t *values, struct lw_native_derived *derived,
+		     struct lw_refusal *why)
+{
+	struct lw_derived full;
+	int ret;
+
+	/* All members of struct lw_params are 32 bit wide and stand in the order of the map. */
+	ret = lw_params_derive((const struct lw_params *)values, &full, why);
+	if (ret == 0) {
+		*derived = (struct lw_native_derived){
+			.ka = full.ka,
+			.nr = full.nr,
+			.ks = full.ks,
+			.reversal_plus_usteps = full.reversal_plus_usteps,
+			.reversal_minus_usteps = full.reversal_minus_usteps,
+			.slope_error_ppm = full.slope_error_ppm,
+			.overshoot_error_um = full.overshoot_error_um,
+			.overshoot_um = full.overshoot_um,
+			.edges_per_1000_drum_revs = full.edges_per_1000_drum_revs,
+			.dwell_plus_edges = full.dwell_plus_edges,
+			.dwell_minus_edges = full.dwell_minus_edges,
+		};
+	}
+	return ret;
+}
+
+/** A world at virtual time 0, or NULL. */
+struct lw_world *lw_native_world_create(uint64_t seed, int32_t carriage_um)
+{
+	const struct lw_world_config config = {.seed = seed, .carriage_um = carriage_um};
+	struct lw_world *world = malloc(sizeof(*world));
+
+	if (world != NULL && lw_world_init(world, &config, 0) != 0) {
+		free(world);
+		world = NULL;
+	}
+	return world;
+}
+
+/** End a world. */
+void lw_native_world_destroy(struct lw_world *world)
+{
+	free(world);
+}
+
+/** Let virtual time pass. */
+void lw_native_world_run_ns(struct lw_world *world, uint64_t duration_ns)
+{
+	lw_world_run(world, world->now_ns + duration_ns);
+}
+
+/** One Modbus request to the controller, without a line between. */
+size_t lw_native_world_request(struct lw_world *world, const uint8_t *request, size_t length,
+			       uint8_t response[LW_PDU_MAX])
+{
+	return lw_pdu_handle(&world->device.slave.pdu, request, length, response);
+}
+
+/** lw_plant_inject() on the world's plant. */
+int lw_native_world_inject(struct lw_world *world, int fault, int32_t argument)
+{
+	return lw_plant_inject(&world->plant, (enum lw_plant_fault)fault, argument);
+}
+
+/** lw_plant_read_truth() on the world's plant. */
+void lw_native_world_truth(const struct lw_world *world, struct lw_plant_truth *truth)
+{
+	lw_plant_read_truth(&world->plant, truth);
+}

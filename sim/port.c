@@ -1,0 +1,175 @@
+#define _GNU_SOURCE
+
+#include "port.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <termios.h>
+#include <unistd.h>
+
+bool lw_port_is_serial(const char *path)
+{
+	struct stat info;
+
+	/* A link left behind by a killed simulator points at a pty: not a port of ours to open. */
+	return lstat(path, &info) == 0 &&
+	       (S_ISCHR(info.st_mode) || (S_ISLNK(info.st_mode) && stat(path, &info) == 0 &&
+					  S_ISCHR(info.st_mode) && strncmp(path, "/dev/", 5) == 0));
+}
+
+static speed_t speed_of(uint32_t baud)
+{
+	switch (baud) {
+	case 1200:
+		return B1200;
+	case 2400:
+		return B2400;
+	case 4800:
+		return B4800;
+	case 9600:
+		return B9600;
+	case 38400:
+		return B38400;
+	case 57600:
+		return B57600;
+	case 115200:
+		return B115200;
+	default:
+		return B19200;
+	}
+}
+
+static int open_serial(struct lw_port *port, const char *path, struct lw_port_line line)
+{
+	struct termios settings;
+
+	port->fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+	if (port->fd < 0) {
+		return -errno;
+	}
+	if (tcgetattr(port->fd, &settings)) {
+		goto fail;
+	}
+	cfmakeraw(&settings);
+	cfsetspeed(&settings, speed_of(line.baud));
+	settings.c_cflag |= CLOCAL | CREAD;
+	settings.c_cflag &= ~(tcflag_t)(PARENB | PARODD | CSTOPB);
+	if (line.format == LW_LINE_FORMAT_8E1) {
+		settings.c_cflag |= PARENB;
+	} else if (line.format == LW_LINE_FORMAT_8O1) {
+		settings.c_cflag |= PARENB | PARODD;
+	} else if (line.format == LW_LINE_FORMAT_8N2) {
+		settings.c_cflag |= CSTOPB;
+	}
+	if (tcsetattr(port->fd, TCSANOW, &settings)) {
+		goto fail;
+	}
+	return 0;
+
+fail:
+	close(port->fd);
+	return -errno;
+}
+
+static int make_link(struct lw_port *port, const char *target, const char *path)
+{
+	struct stat info;
+
+	if (lstat(path, &info) == 0) {
+		if (!S_ISLNK(info.st_mode)) {
+			return -EEXIST;
+		}
+		(void)unlink(path);
+	}
+	if ((size_t)snprintf(port->link, sizeof(port->link), "%s", path) >= sizeof(port->link)) {
+		return -ENAMETOOLONG;
+	}
+	if (symlink(target, path)) {
+		port->link[0] = '\0';
+		return -errno;
+	}
+	return 0;
+}
+
+static int open_pty(struct lw_port *port, const char *path)
+{
+	struct termios settings;
+	char name[128];
+	int ret;
+
+	port->fd = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+	if (port->fd < 0) {
+		return -errno;
+	}
+	if (grantpt(port->fd) || unlockpt(port->fd) ||
+	    ptsname_r(port->fd, name, sizeof(name)) != 0) {
+		ret = -errno;
+		goto fail;
+	}
+	port->client_fd = open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
+	if (port->client_fd < 0) {
+		ret = -errno;
+		goto fail;
+	}
+	if (tcgetattr(port->client_fd, &settings) == 0) {
+		cfmakeraw(&settings);
+		(void)tcsetattr(port->client_fd, TCSANOW, &settings);
+	}
+	ret = make_link(port, name, path);
+	if (ret == 0) {
+		return 0;
+	}
+	close(port->client_fd);
+fail:
+	close(port->fd);
+	return ret;
+}
+
+int lw_port_open(struct lw_port *port, const char *path, struct lw_port_line line)
+{
+	*port = (struct lw_port){.fd = -1, .client_fd = -1};
+	return lw_port_is_serial(path) ? open_serial(port, path, line) : open_pty(port, path);
+}
+
+void lw_port_close(struct lw_port *port)
+{
+	char target[128];
+	char own[128];
+	ssize_t length;
+
+	if (port->link[0] != '\0') {
+		/* Another simulator may have taken the name over. */
+		length = readlink(port->link, target, sizeof(target) - 1);
+		if (length > 0 && ptsname_r(port->fd, own, sizeof(own)) == 0) {
+			target[length] = '\0';
+			if (strcmp(target, own) == 0) {
+				(void)unlink(port->link);
+			}
+		}
+	}
+	if (port->client_fd >= 0) {
+		close(port->client_fd);
+	}
+	close(port->fd);
+}
+
+ssize_t lw_port_read(struct lw_port *port, uint8_t *bytes, size_t size)
+{
+	const ssize_t count = read(port->fd, bytes, size);
+
+	if (count >= 0) {
+		return count == 0 && port->client_fd < 0 ? -EIO : count;
+	}
+	return errno == EAGAIN || errno == EINTR ? 0 : -errno;
+}
+
+void lw_port_write(struct lw_port *port, const uint8_t *bytes, size_t length)
+{
+	const ssize_t written = write(port->fd, bytes, length);
+
+	(void)written;
+}

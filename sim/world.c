@@ -1,0 +1,169 @@
+#include "world.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include "bench.h"
+
+#define NS_PER_US 1000u
+#define TICK_NS   (LW_CONTROLLER_TICK_US * NS_PER_US)
+
+static void power_up(struct lw_world *world, uint64_t slave_now_us)
+{
+	const struct lw_plant_pins *pins = &world->plant.pins;
+	struct lw_inputs inputs = {.encoder_a = pins->encoder_a, .encoder_b = pins->encoder_b};
+
+	for (int side = 0; side < 2; side++) {
+		inputs.limit[side].no_closed = pins->limit[side].no_closed;
+		inputs.limit[side].nc_closed = pins->limit[side].nc_closed;
+		inputs.overtravel[side] = pins->overtravel[side];
+	}
+	lw_device_init(&world->device, &world->device_config, world->storage, world->storage_length,
+		       &inputs, world->now_ns / NS_PER_US, slave_now_us);
+	/* Without a controller there is no current; the first tick switches it on. */
+	lw_plant_enable(&world->plant, false);
+	world->stepper_enabled = false;
+	world->timer_rate_edges_per_s = 0;
+	world->timer_ns = UINT64_MAX;
+	world->was_indexed = false;
+}
+
+int lw_world_init(struct lw_world *world, const struct lw_world_config *config,
+		  uint64_t slave_now_us)
+{
+	struct lw_plant_config plant_config;
+	int ret;
+
+	*world = (struct lw_world){.config = *config, .tick_ns = TICK_NS};
+	lw_plant_config_default(&plant_config);
+	plant_config.start_um = config->carriage_um;
+	ret = lw_plant_init(&world->plant, &plant_config, config->seed);
+	if (ret) {
+		return ret;
+	}
+	if (config->record != NULL && config->record_length <= sizeof(world->storage)) {
+		memcpy(world->storage, config->record, config->record_length);
+		world->storage_length = config->record_length;
+	}
+	world->bench_section = lw_bench_section(world);
+	world->device_config = (struct lw_device_config){
+		.host = LW_HOST_SIMULATOR,
+		.host_section = &world->bench_section,
+		.silence_us = config->silence_us,
+		.unit_id = config->unit_id,
+	};
+	lw_bench_init(world);
+	power_up(world, slave_now_us);
+	return 0;
+}
+
+static void save(struct lw_world *world)
+{
+	const uint8_t *record = lw_device_pending_record(&world->device);
+	int ret = 0;
+
+	if (record == NULL) {
+		return;
+	}
+	if (world->config.store != NULL) {
+		ret = world->config.store(world->config.context, record, LW_RECORD_SIZE);
+	}
+	if (ret == 0) {
+		memcpy(world->storage, record, LW_RECORD_SIZE);
+		world->storage_length = LW_RECORD_SIZE;
+	}
+	lw_device_record_written(&world->device, ret);
+}
+
+/** Do what the controller asks for outside of its interrupts. */
+static void serve_outputs(struct lw_world *world)
+{
+	const struct lw_controller *controller = &world->device.controller;
+	const bool enabled = lw_controller_stepper_enabled(controller);
+	const uint32_t rate = lw_controller_timer_rate_edges_per_s(controller);
+
+	if (enabled != world->stepper_enabled) {
+		lw_plant_enable(&world->plant, enabled);
+		world->stepper_enabled = enabled;
+	}
+	if (rate != world->timer_rate_edges_per_s) {
+		world->timer_rate_edges_per_s = rate;
+		world->timer_ns = rate ? world->now_ns + 1000000000u / rate : UINT64_MAX;
+	}
+	if (controller->indexed && !world->was_indexed) {
+		lw_plant_reference(&world->plant); /* from here on a slip is a slip */
+	}
+	world->was_indexed = controller->indexed;
+}
+
+static void tick(struct lw_world *world)
+{
+	if (world->power_cut) {
+		world->power_cut = false;
+		power_up(world, world->device.slave.last_request_us);
+	}
+	lw_device_tick(&world->device, world->now_ns / NS_PER_US);
+	save(world);
+	serve_outputs(world);
+	if (world->config.observe != NULL) {
+		world->config.observe(world->config.context);
+	}
+}
+
+static void step(struct lw_world *world, int direction)
+{
+	if (direction != 0) {
+		lw_plant_step(&world->plant, direction);
+	}
+}
+
+/** One event of the plant: hand the changed pins to the controller's interrupts. */
+static void plant_event(struct lw_world *world)
+{
+	struct lw_controller *controller = &world->device.controller;
+	const struct lw_plant_pins *pins = &world->plant.pins;
+	const uint32_t changed = lw_plant_advance(&world->plant);
+
+	if (changed & LW_PLANT_ENCODER) {
+		step(world, lw_controller_encoder(controller, pins->encoder_a, pins->encoder_b));
+	}
+	if (!(changed & ~(uint32_t)LW_PLANT_ENCODER)) {
+		return;
+	}
+	for (int side = 0; side < 2; side++) {
+		if (changed & (side == LW_PLUS ? LW_PLANT_LIMIT_PLUS : LW_PLANT_LIMIT_MINUS)) {
+			lw_controller_limit(controller, side, pins->limit[side].no_closed,
+					    pins->limit[side].nc_closed, world->now_ns / NS_PER_US);
+		}
+		if (changed &
+		    (side == LW_PLUS ? LW_PLANT_OVERTRAVEL_PLUS : LW_PLANT_OVERTRAVEL_MINUS)) {
+			lw_controller_overtravel(controller, side, pins->overtravel[side]);
+		}
+	}
+}
+
+void lw_world_run(struct lw_world *world, uint64_t until_ns)
+{
+	for (;;) {
+		const uint64_t plant_ns = lw_plant_next_event_ns(&world->plant);
+		const uint64_t own_ns =
+			world->timer_ns < world->tick_ns ? world->timer_ns : world->tick_ns;
+
+		if ((plant_ns < own_ns ? plant_ns : own_ns) > until_ns) {
+			break;
+		}
+		if (plant_ns <= own_ns) {
+			world->now_ns = plant_ns;
+			plant_event(world);
+		} else if (world->timer_ns <= world->tick_ns) {
+			world->now_ns = world->timer_ns;
+			world->timer_ns += 1000000000u / world->timer_rate_edges_per_s;
+			step(world, lw_controller_timer_edge(&world->device.controller));
+		} else {
+			world->now_ns = world->tick_ns;
+			world->tick_ns += TICK_NS;
+			tick(world);
+		}
+	}
+	world->now_ns = until_ns;
+}

@@ -1,0 +1,69 @@
+/**
+ * @file
+ * The world: one controller and one plant on a virtual clock, wired pin to pin. No clock, no file,
+ * no thread of its own; the simulator program and the tests drive it.
+ *
+ * A world refers to itself: do not copy or move it.
+ */
+#ifndef LW_WORLD_H
+#define LW_WORLD_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "lw/device.h"
+#include "lw/map.h"
+#include "lw/plant.h"
+
+/** How a world starts. */
+struct lw_world_config {
+	uint64_t seed;
+	int32_t carriage_um;   /**< where the carriage stands at power-up */
+	uint32_t silence_us;   /**< see struct lw_device_config */
+	uint8_t unit_id;       /**< see struct lw_device_config */
+	const uint8_t *record; /**< what the storage holds, or NULL */
+	size_t record_length;
+	void *context; /**< handed to the functions below */
+	/** Write a record to the storage: 0 or a negative errno. NULL: it is kept in memory only.
+	 */
+	int (*store)(void *context, const uint8_t *record, size_t length);
+	/** Called after every tick, once per millisecond of virtual time. May be NULL. */
+	void (*observe)(void *context);
+};
+
+/** State. Read the parts through their own interfaces. */
+struct lw_world {
+	struct lw_device device;
+	struct lw_plant plant;
+	uint64_t now_ns; /**< virtual time */
+
+	struct lw_world_config config;
+	struct lw_device_config device_config;
+	struct lw_bank_section bench_section;
+	struct lw_bench bench; /**< set-points and image of the bench registers */
+	uint64_t tick_ns;      /**< next tick */
+	uint64_t timer_ns;     /**< next edge of the edge timer */
+	uint32_t timer_rate_edges_per_s;
+	bool stepper_enabled;
+	bool power_cut; /**< restart the controller on the next tick */
+	bool was_indexed;
+	uint8_t storage[LW_RECORD_SIZE];
+	size_t storage_length;
+	struct lw_plant_profile_point profile[LW_PLANT_PROFILE_POINTS_MAX];
+	size_t profile_count;
+};
+
+/**
+ * Build the machine and power the controller up at virtual time 0.
+ *
+ * @param slave_now_us time for the Modbus slave, which may be another clock
+ * @retval 0 done
+ * @retval -EINVAL the carriage stands outside of the end stops
+ */
+int lw_world_init(struct lw_world *world, const struct lw_world_config *config,
+		  uint64_t slave_now_us);
+
+/** Let virtual time pass until `until_ns`. */
+void lw_world_run(struct lw_world *world, uint64_t until_ns);
+
+#endif /* LW_WORLD_H */

@@ -1,0 +1,564 @@
+/*
+ * Modbus requests: every function code in its normal form, at each limit and one beyond, and
+ * refused. Requests and responses live in buffers of exactly their size, so that the address
+ * sanitizer sees every access outside.
+ */
+#include <stdlib.h>
+
+#include <unity.h>
+
+#include "lw/pdu.h"
+#include "small_bank.h"
+
+#define LONG_TEXT                                                                                  \
+	"0123456789012345678901234567890123456789012345678901234567890123456789"                   \
+	"0123456789012345678901234567890123456789012345678901234567890123456789"                   \
+	"0123456789012345678901234567890123456789012345678901234567890123456789"                   \
+	"0123456789012345678901234567890123456789" /* 250 characters */
+
+static const struct lw_pdu_config config = {
+	.bank = &small.bank,
+	.device_id = {"vend", "code", "1.2", "url", "name", "model"},
+};
+
+static struct lw_pdu pdu;
+static uint8_t response[LW_PDU_MAX];
+static size_t response_length;
+
+void setUp(void)
+{
+	small_init();
+	lw_pdu_init(&pdu, &config);
+}
+
+void tearDown(void)
+{
+}
+
+static void ask(const uint8_t *request, size_t length)
+{
+	uint8_t *exact_request = malloc(length);
+	uint8_t *exact_response = malloc(LW_PDU_MAX);
+
+	memcpy(exact_request, request, length);
+	response_length = lw_pdu_handle(&pdu, exact_request, length, exact_response);
+	TEST_ASSERT_LESS_OR_EQUAL(LW_PDU_MAX, response_length);
+	memcpy(response, exact_response, response_length);
+	free(exact_response);
+	free(exact_request);
+}
+
+static void assert_answer(const uint8_t *request, size_t length, const uint8_t *answer,
+			  size_t answer_length)
+{
+	ask(request, length);
+	TEST_ASSERT_EQUAL_UINT(answer_length, response_length);
+	TEST_ASSERT_EQUAL_HEX8_ARRAY(answer, response, answer_length);
+}
+
+/* Refused with this exception and reason, and nothing has changed. */
+static void assert_refused(const uint8_t *request, size_t length, uint8_t exception,
+			   enum lw_reason reason)
+{
+	struct small_bank before = small;
+	uint32_t exceptions = pdu.counters[LW_BUS_EXCEPTIONS];
+
+	ask(request, length);
+	TEST_ASSERT_EQUAL_UINT(2, response_length);
+	TEST_ASSERT_EQUAL_HEX8(request[0] | 0x80, response[0]);
+	TEST_ASSERT_EQUAL_HEX8(exception, response[1]);
+	TEST_ASSERT_EQUAL_UINT16(reason, pdu.last_error.reason);
+	TEST_ASSERT_EQUAL_HEX8(request[0], pdu.last_error.function);
+	TEST_ASSERT_EQUAL_HEX8(exception, pdu.last_error.exception);
+	TEST_ASSERT_EQUAL_UINT32(exceptions + 1, pdu.counters[LW_BUS_EXCEPTIONS]);
+	TEST_ASSERT_EQUAL_MEMORY(&before.values, &small.values, sizeof(small.values));
+	TEST_ASSERT_EQUAL_MEMORY(before.coils, small.coils, sizeof(small.coils));
+	TEST_ASSERT_EQUAL_UINT(before.store_count, small.store_count);
+}
+
+static void assert_error_details(uint16_t address, int32_t value, int32_t limit)
+{
+	TEST_ASSERT_EQUAL_UINT16(address, pdu.last_error.address);
+	TEST_ASSERT_EQUAL_INT32(value, pdu.last_error.value);
+	TEST_ASSERT_EQUAL_INT32(limit, pdu.last_error.limit);
+}
+
+#define BYTES(...) (const uint8_t[]){__VA_ARGS__}, sizeof((const uint8_t[]){__VA_ARGS__})
+
+/* A request of function, address, count, byte count and so many zero bytes. */
+static size_t make_write(uint8_t *request, uint8_t function, uint16_t address, uint16_t count,
+			 uint8_t byte_count)
+{
+	memset(request, 0, 300);
+	request[0] = function;
+	request[1] = (uint8_t)(address >> 8);
+	request[2] = (uint8_t)address;
+	request[3] = (uint8_t)(count >> 8);
+	request[4] = (uint8_t)count;
+	request[5] = byte_count;
+	return 6u + byte_count;
+}
+
+/* ---- reading ---- */
+
+static void test_fc01_and_fc02_read_bits(void)
+{
+	small.coils[0] = 0x000002CD;
+	small.discretes[1] = 0x00000001;
+	assert_answer(BYTES(1, 0, 0, 0, 10), BYTES(1, 2, 0xCD, 0x02));
+	assert_answer(BYTES(1, 0, 2, 0, 1), BYTES(1, 1, 0x01));
+	assert_answer(BYTES(2, 0, 31, 0, 2), BYTES(2, 1, 0x02));
+	for (uint8_t function = 1; function <= 2; function++) {
+		ask(BYTES(function, 0, 0, 0x07, 0xD0)); /* 2000 */
+		TEST_ASSERT_EQUAL_UINT(252, response_length);
+		TEST_ASSERT_EQUAL_HEX8(250, response[1]);
+		assert_refused(BYTES(function, 0, 0, 0x07, 0xD1), 3, LW_REASON_BAD_COUNT);
+		assert_error_details(LW_NO_ADDRESS, 2001, 2000);
+		assert_refused(BYTES(function, 0, 0, 0, 0), 3, LW_REASON_BAD_COUNT);
+		assert_error_details(LW_NO_ADDRESS, 0, 1);
+		assert_refused(BYTES(function, 0x07, 0xDF, 0, 2), 2, LW_REASON_UNKNOWN_ADDRESS);
+		assert_error_details(2016, 0, 0);
+		assert_refused(BYTES(function, 0, 0, 0), 3, LW_REASON_BAD_LENGTH);
+		assert_error_details(LW_NO_ADDRESS, 4, 5);
+		assert_refused(BYTES(function, 0, 0, 0, 1, 0), 3, LW_REASON_BAD_LENGTH);
+		assert_refused(BYTES(function), 3, LW_REASON_BAD_LENGTH);
+	}
+}
+
+static void test_fc03_and_fc04_read_registers(void)
+{
+	static const uint8_t first_address[] = {0x00, 0x64, 0x04, 0x4C}; /* 100, 1100 */
+
+	small.values.array[0] = 0x022B;
+	small.values.array[1] = 0x0064;
+	for (uint8_t function = 3; function <= 4; function++) {
+		uint8_t high = first_address[2 * (function - 3)];
+		uint8_t low = first_address[2 * (function - 3) + 1];
+
+		assert_answer(BYTES(function, high, low, 0, 2),
+			      BYTES(function, 4, 0x02, 0x2B, 0x00, 0x64));
+		ask(BYTES(function, high, low, 0, 125));
+		TEST_ASSERT_EQUAL_UINT(252, response_length);
+		TEST_ASSERT_EQUAL_HEX8(250, response[1]);
+		assert_refused(BYTES(function, high, low, 0, 126), 3, LW_REASON_BAD_COUNT);
+		assert_error_details(LW_NO_ADDRESS, 126, 125);
+		assert_refused(BYTES(function, high, low, 0, 0), 3, LW_REASON_BAD_COUNT);
+		assert_refused(BYTES(function, high, low, 1, 1), 3, LW_REASON_BAD_COUNT);
+		assert_refused(BYTES(function, 0x13, 0x87, 0, 0x7D), 2, LW_REASON_UNKNOWN_ADDRESS);
+		assert_error_details(0x1387, 0, 0);
+		assert_refused(BYTES(function, high, low, 0), 3, LW_REASON_BAD_LENGTH);
+		assert_refused(BYTES(function, high, low, 0, 1, 0), 3, LW_REASON_BAD_LENGTH);
+	}
+	assert_refused(BYTES(3, 0xFF, 0xFE, 0, 3), 2, LW_REASON_UNKNOWN_ADDRESS);
+}
+
+/* ---- writing ---- */
+
+static void test_fc05_write_single_coil(void)
+{
+	assert_answer(BYTES(5, 0, 3, 0xFF, 0), BYTES(5, 0, 3, 0xFF, 0));
+	TEST_ASSERT_EQUAL_HEX32(8, small.coils[0]);
+	assert_answer(BYTES(5, 0, 3, 0, 0), BYTES(5, 0, 3, 0, 0));
+	TEST_ASSERT_EQUAL_HEX32(0, small.coils[0]);
+	assert_refused(BYTES(5, 0, 3, 0xFF, 1), 3, LW_REASON_BAD_COIL_VALUE);
+	assert_error_details(3, 0xFF01, 0xFF00);
+	assert_refused(BYTES(5, 0, 3, 0, 1), 3, LW_REASON_BAD_COIL_VALUE);
+	assert_refused(BYTES(5, 0x08, 0, 0xFF, 0), 2, LW_REASON_UNKNOWN_ADDRESS);
+	assert_refused(BYTES(5, 0, 3, 0xFF), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(5, 0, 3, 0xFF, 0, 0), 3, LW_REASON_BAD_LENGTH);
+}
+
+static void test_fc06_write_single_register(void)
+{
+	assert_answer(BYTES(6, 0, 1, 0xFF, 0x9C), BYTES(6, 0, 1, 0xFF, 0x9C));
+	TEST_ASSERT_EQUAL_INT32(-100, small.values.level);
+	assert_refused(BYTES(6, 0, 1, 0, 101), 3, LW_REASON_OUT_OF_RANGE);
+	assert_error_details(1, 101, 100);
+	assert_refused(BYTES(6, 0, 2, 0, 20), 2, LW_REASON_HALF_OF_PAIR);
+	assert_error_details(2, 0, 0);
+	assert_refused(BYTES(6, 0, 9, 0, 0), 2, LW_REASON_NOT_WRITABLE);
+	assert_refused(BYTES(6, 0, 11, 0, 0), 2, LW_REASON_UNKNOWN_ADDRESS);
+	assert_refused(BYTES(6, 0, 1, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(6, 0, 1, 0, 1, 0), 3, LW_REASON_BAD_LENGTH);
+}
+
+static void test_owners_refusals_become_exceptions(void)
+{
+	static const struct {
+		int error;
+		uint8_t exception;
+	} cases[] = {{-ENXIO, 2}, {-EINVAL, 3}, {-EIO, 4}, {-EBUSY, 6}, {-ENOTSUP, 1}};
+
+	small.refused_point = &small_points[1];
+	for (unsigned int i = 0; i < ARRAY_SIZE(cases); i++) {
+		small.refused_error = cases[i].error;
+		assert_refused(BYTES(6, 0, 1, 0, 42), cases[i].exception, LW_REASON_BUSY_TRACKING);
+		assert_error_details(1, 42, 0);
+	}
+	TEST_ASSERT_EQUAL_UINT32(1, pdu.counters[LW_BUS_BUSY]);
+}
+
+static void test_fc15_write_multiple_coils(void)
+{
+	uint8_t request[300];
+	size_t length;
+
+	assert_answer(BYTES(15, 0, 19, 0, 10, 2, 0xCD, 0x01), BYTES(15, 0, 19, 0, 10));
+	TEST_ASSERT_EQUAL_HEX32(0x1CDu << 19, small.coils[0]);
+	length = make_write(request, 15, 0, 1968, 246);
+	ask(request, length);
+	TEST_ASSERT_EQUAL_UINT(5, response_length);
+	TEST_ASSERT_EQUAL_HEX32(0, small.coils[0]);
+	length = make_write(request, 15, 0, 1969, 247);
+	assert_refused(request, length, 3, LW_REASON_BAD_COUNT);
+	assert_error_details(LW_NO_ADDRESS, 1969, 1968);
+	assert_refused(BYTES(15, 0, 19, 0, 0, 0), 3, LW_REASON_BAD_COUNT);
+	assert_refused(BYTES(15, 0, 19, 0, 10, 1, 0xCD), 3, LW_REASON_BAD_LENGTH);
+	assert_error_details(LW_NO_ADDRESS, 1, 2);
+	assert_refused(BYTES(15, 0, 19, 0, 10, 2, 0xCD), 3, LW_REASON_BAD_LENGTH);
+	assert_error_details(LW_NO_ADDRESS, 7, 8);
+	assert_refused(BYTES(15, 0, 19, 0, 10, 2, 0xCD, 1, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(15, 0, 19, 0, 10), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(15, 0x07, 0xDF, 0, 2, 1, 3), 2, LW_REASON_UNKNOWN_ADDRESS);
+	assert_refused(BYTES(15, 0, 0, 0, 2, 1, 3), 3, LW_REASON_SEVERAL_COMMANDS);
+}
+
+static void test_fc16_write_multiple_registers(void)
+{
+	uint8_t request[300];
+	size_t length;
+
+	assert_answer(BYTES(16, 0, 2, 0, 4, 8, 0, 0, 0, 99, 0xFF, 0xFF, 0xFF, 0xFE),
+		      BYTES(16, 0, 2, 0, 4));
+	TEST_ASSERT_EQUAL_UINT32(99, small.values.speed);
+	TEST_ASSERT_EQUAL_INT32(-2, small.values.place);
+	length = make_write(request, 16, 100, 123, 246);
+	ask(request, length);
+	TEST_ASSERT_EQUAL_UINT(5, response_length);
+	TEST_ASSERT_EQUAL_UINT(2 + 123, small.store_count);
+	length = make_write(request, 16, 100, 124, 248);
+	assert_refused(request, length, 3, LW_REASON_BAD_LENGTH); /* a PDU of 254 bytes */
+	assert_refused(request, length - 1, 3, LW_REASON_BAD_COUNT);
+	assert_error_details(LW_NO_ADDRESS, 124, 123);
+	assert_refused(BYTES(16, 0, 100, 0, 0, 0), 3, LW_REASON_BAD_COUNT);
+	assert_refused(BYTES(16, 0, 100, 0, 1, 3, 0, 0, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(16, 0, 100, 0, 1, 2, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(16, 0, 100, 0, 1, 2, 0, 0, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(16, 0, 100, 0, 1), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(16, 0, 1, 0, 2, 4, 0, 1, 0, 0), 2, LW_REASON_HALF_OF_PAIR);
+	/* All or nothing: the last value is bad. */
+	assert_refused(BYTES(16, 0, 6, 0, 3, 6, 0, 0, 0x04, 0xB0, 0, 3), 3, LW_REASON_OUT_OF_RANGE);
+	assert_error_details(8, 3, 2);
+}
+
+static void test_fc22_mask_write_register(void)
+{
+	small.values.array[4] = 0x12;
+	assert_answer(BYTES(22, 0, 104, 0, 0xF2, 0, 0x25), BYTES(22, 0, 104, 0, 0xF2, 0, 0x25));
+	TEST_ASSERT_EQUAL_HEX32(0x17, small.values.array[4]); /* the standard's example */
+	small.values.array[4] = 0xAAAA;
+	assert_answer(BYTES(22, 0, 104, 0, 0, 0xFF, 0), BYTES(22, 0, 104, 0, 0, 0xFF, 0));
+	TEST_ASSERT_EQUAL_HEX32(0xFF00, small.values.array[4]);
+	assert_answer(BYTES(22, 0, 104, 0xFF, 0xFF, 0xFF, 0xFF),
+		      BYTES(22, 0, 104, 0xFF, 0xFF, 0xFF, 0xFF));
+	TEST_ASSERT_EQUAL_HEX32(0xFF00, small.values.array[4]);
+	assert_refused(BYTES(22, 0, 8, 0, 0, 0, 3), 3, LW_REASON_OUT_OF_RANGE);
+	assert_refused(BYTES(22, 0, 2, 0, 0, 0, 3), 2, LW_REASON_HALF_OF_PAIR);
+	assert_refused(BYTES(22, 0, 11, 0, 0, 0, 3), 2, LW_REASON_UNKNOWN_ADDRESS);
+	assert_refused(BYTES(22, 0, 8, 0, 0, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(22, 0, 8, 0, 0, 0, 1, 0), 3, LW_REASON_BAD_LENGTH);
+}
+
+static void test_fc23_writes_then_reads(void)
+{
+	small.values.array[0] = 1;
+	assert_answer(BYTES(23, 0, 100, 0, 2, 0, 101, 0, 1, 2, 0x12, 0x34),
+		      BYTES(23, 4, 0, 1, 0x12, 0x34));
+}
+
+static void test_fc23_limits(void)
+{
+	uint8_t request[300] = {23, 0, 100, 0, 125, 0, 100, 0, 121, 242};
+
+	ask(request, 10 + 242);
+	TEST_ASSERT_EQUAL_UINT(252, response_length);
+	TEST_ASSERT_EQUAL_UINT(121, small.store_count);
+	request[4] = 126;
+	assert_refused(request, 10 + 242, 3, LW_REASON_BAD_COUNT);
+	assert_error_details(LW_NO_ADDRESS, 126, 125);
+	request[4] = 0;
+	assert_refused(request, 10 + 242, 3, LW_REASON_BAD_COUNT);
+	request[4] = 125;
+	request[8] = 122;
+	request[9] = 244;
+	assert_refused(request, 10 + 244, 3, LW_REASON_BAD_LENGTH); /* a PDU of 254 bytes */
+	assert_refused(request, 10 + 243, 3, LW_REASON_BAD_COUNT);
+	request[8] = 0;
+	request[9] = 0;
+	assert_refused(request, 10, 3, LW_REASON_BAD_COUNT);
+}
+
+static void test_fc23_refusals_write_nothing(void)
+{
+	/* unknown read range, unknown write range, bad value, lengths */
+	assert_refused(BYTES(23, 0, 11, 0, 1, 0, 101, 0, 1, 2, 0, 1), 2, LW_REASON_UNKNOWN_ADDRESS);
+	assert_error_details(11, 0, 0);
+	assert_refused(BYTES(23, 0, 1, 0, 1, 0, 12, 0, 1, 2, 0, 1), 2, LW_REASON_UNKNOWN_ADDRESS);
+	assert_error_details(12, 0, 0);
+	assert_refused(BYTES(23, 0, 1, 0, 1, 0, 8, 0, 1, 2, 0, 3), 3, LW_REASON_OUT_OF_RANGE);
+	assert_refused(BYTES(23, 0, 1, 0, 1, 0, 8, 0, 1, 1, 0, 1), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(23, 0, 1, 0, 1, 0, 8, 0, 1, 2, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(23, 0, 1, 0, 1, 0, 8, 0, 1, 2, 0, 1, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(23, 0, 1, 0, 1, 0, 8, 0, 1), 3, LW_REASON_BAD_LENGTH);
+}
+
+/* ---- diagnostics ---- */
+
+static void test_fc08_echo(void)
+{
+	uint8_t request[LW_PDU_MAX + 2] = {8, 0, 0, 1, 2, 3, 4};
+
+	assert_answer(BYTES(8, 0, 0, 0xA5, 0x37), BYTES(8, 0, 0, 0xA5, 0x37));
+	assert_answer(request, LW_PDU_MAX, request, LW_PDU_MAX);
+	assert_refused(request, LW_PDU_MAX + 2, 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(8, 0, 0, 1, 2, 3), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(8, 0, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(8), 3, LW_REASON_BAD_LENGTH);
+}
+
+static void test_fc08_reads_each_counter(void)
+{
+	for (uint8_t i = 0; i < LW_BUS_COUNTER_COUNT; i++) {
+		pdu.counters[i] = 0x10100u + i;
+	}
+	pdu.counters[LW_BUS_SERVER_MESSAGES]--; /* the request itself counts */
+	for (uint8_t i = 0; i < LW_BUS_COUNTER_COUNT; i++) {
+		assert_answer(BYTES(8, 0, (uint8_t)(11 + i), 0, 0),
+			      BYTES(8, 0, (uint8_t)(11 + i), 1, i));
+		pdu.counters[LW_BUS_SERVER_MESSAGES] = 0x10100u + LW_BUS_SERVER_MESSAGES - 1;
+	}
+	assert_refused(BYTES(8, 0, 11, 0, 1), 3, LW_REASON_OUT_OF_RANGE);
+	assert_error_details(LW_NO_ADDRESS, 1, 0);
+	assert_refused(BYTES(8, 0, 11, 0, 0, 0, 0), 3, LW_REASON_BAD_LENGTH);
+}
+
+static void test_fc08_diagnostic_register_and_clear(void)
+{
+	pdu.counters[LW_BUS_CRC_ERRORS] = 3;
+	assert_answer(BYTES(8, 0, 2, 0, 0), BYTES(8, 0, 2, 0, 0x0A)); /* and server messages */
+	assert_answer(BYTES(8, 0, 10, 0, 0), BYTES(8, 0, 10, 0, 0));
+	for (unsigned int i = 0; i < LW_BUS_COUNTER_COUNT; i++) {
+		TEST_ASSERT_EQUAL_UINT32(0, pdu.counters[i]);
+	}
+}
+
+static void test_fc08_undefined_sub_functions(void)
+{
+	static const uint16_t undefined[] = {3, 5, 6, 7, 8, 9, 19, 20, 21, 256, 65535};
+
+	for (unsigned int i = 0; i < ARRAY_SIZE(undefined); i++) {
+		assert_refused(BYTES(8, (uint8_t)(undefined[i] >> 8), (uint8_t)undefined[i], 0, 0),
+			       1, LW_REASON_UNDEFINED_SUB_FUNCTION);
+		assert_error_details(LW_NO_ADDRESS, undefined[i], 18);
+	}
+}
+
+static void test_fc08_listen_only_until_restart(void)
+{
+	assert_refused(BYTES(8, 0, 4, 0, 1), 3, LW_REASON_OUT_OF_RANGE);
+	ask(BYTES(8, 0, 4, 0, 0));
+	TEST_ASSERT_EQUAL_UINT(0, response_length);
+	TEST_ASSERT_EQUAL_UINT32(1, pdu.counters[LW_BUS_NO_RESPONSES]);
+	TEST_ASSERT_TRUE(pdu.listen_only);
+
+	ask(BYTES(6, 0, 1, 0, 5)); /* not executed */
+	TEST_ASSERT_EQUAL_UINT(0, response_length);
+	TEST_ASSERT_EQUAL_UINT(0, small.store_count);
+	TEST_ASSERT_EQUAL_UINT32(2, pdu.counters[LW_BUS_NO_RESPONSES]);
+	ask(BYTES(8, 0, 1, 0, 1)); /* no restart */
+	TEST_ASSERT_TRUE(pdu.listen_only);
+
+	ask(BYTES(8, 0, 1, 0, 0));
+	TEST_ASSERT_EQUAL_UINT(0, response_length);
+	TEST_ASSERT_FALSE(pdu.listen_only);
+	TEST_ASSERT_EQUAL_UINT32(0, pdu.counters[LW_BUS_NO_RESPONSES]);
+	assert_answer(BYTES(6, 0, 1, 0, 5), BYTES(6, 0, 1, 0, 5));
+}
+
+static void test_fc08_restart(void)
+{
+	pdu.counters[LW_BUS_MESSAGES] = 9;
+	assert_answer(BYTES(8, 0, 1, 0xFF, 0), BYTES(8, 0, 1, 0xFF, 0));
+	TEST_ASSERT_EQUAL_UINT32(0, pdu.counters[LW_BUS_MESSAGES]);
+	assert_answer(BYTES(8, 0, 1, 0, 0), BYTES(8, 0, 1, 0, 0));
+	assert_refused(BYTES(8, 0, 1, 0xFF, 1), 3, LW_REASON_OUT_OF_RANGE);
+}
+
+/* ---- device identification ---- */
+
+static void test_fc43_streams(void)
+{
+	static const uint8_t basic[] = {43,  14, 1, 0x82, 0,   0,   3,   0, 4, 'v', 'e', 'n',
+					'd', 1,  4, 'c',  'o', 'd', 'e', 2, 3, '1', '.', '2'};
+	static const uint8_t from_name[] = {43,  14,  2,   0x82, 0, 0,   2,   4,   4,   'n',
+					    'a', 'm', 'e', 5,    5, 'm', 'o', 'd', 'e', 'l'};
+
+	assert_answer(BYTES(43, 14, 1, 0), basic, sizeof(basic));
+	assert_answer(BYTES(43, 14, 1, 3), basic, sizeof(basic)); /* not basic: starts anew */
+	assert_answer(BYTES(43, 14, 2, 4), from_name, sizeof(from_name));
+	ask(BYTES(43, 14, 2, 0x80));
+	TEST_ASSERT_EQUAL_HEX8(6, response[6]);
+	TEST_ASSERT_EQUAL_HEX8(0, response[7]);
+	ask(BYTES(43, 14, 3, 0)); /* extended: as much as there is */
+	TEST_ASSERT_EQUAL_HEX8(3, response[2]);
+	TEST_ASSERT_EQUAL_HEX8(0x82, response[3]);
+	TEST_ASSERT_EQUAL_HEX8(6, response[6]);
+}
+
+static void test_fc43_one_object(void)
+{
+	assert_answer(BYTES(43, 14, 4, 3), BYTES(43, 14, 4, 0x82, 0, 0, 1, 3, 3, 'u', 'r', 'l'));
+	assert_refused(BYTES(43, 14, 4, 6), 2, LW_REASON_UNDEFINED_SUB_FUNCTION);
+	assert_error_details(LW_NO_ADDRESS, 6, 5);
+}
+
+static void test_fc43_more_follows(void)
+{
+	static const struct lw_pdu_config long_config = {
+		.bank = &small.bank,
+		.device_id = {"a", LONG_TEXT, "c", "d", "e", "f"},
+	};
+	static const uint8_t full_head[] = {43, 14, 1, 0x82, 0xFF, 2, 1, 1, LW_DEVICE_ID_MAX};
+
+	pdu.config = &long_config;
+	assert_answer(BYTES(43, 14, 1, 0), BYTES(43, 14, 1, 0x82, 0xFF, 1, 1, 0, 1, 'a'));
+	ask(BYTES(43, 14, 1, 1)); /* fills the PDU, its text cut to 244 */
+	TEST_ASSERT_EQUAL_UINT(LW_PDU_MAX, response_length);
+	TEST_ASSERT_EQUAL_HEX8_ARRAY(full_head, response, sizeof(full_head));
+	TEST_ASSERT_EQUAL_MEMORY(LONG_TEXT, &response[sizeof(full_head)], LW_DEVICE_ID_MAX);
+	assert_answer(BYTES(43, 14, 1, 2), BYTES(43, 14, 1, 0x82, 0, 0, 1, 2, 1, 'c'));
+}
+
+static void test_fc43_refusals(void)
+{
+	assert_refused(BYTES(43, 13, 1, 0), 1, LW_REASON_UNDEFINED_SUB_FUNCTION);
+	assert_refused(BYTES(43, 14, 0, 0), 3, LW_REASON_UNDEFINED_SUB_FUNCTION);
+	assert_refused(BYTES(43, 14, 5, 0), 3, LW_REASON_UNDEFINED_SUB_FUNCTION);
+	assert_refused(BYTES(43, 14, 1), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(43, 14, 1, 0, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(43), 3, LW_REASON_BAD_LENGTH);
+}
+
+/* ---- all functions ---- */
+
+static void test_unknown_functions(void)
+{
+	static const uint8_t known[] = {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43};
+	unsigned int unknown_count = 0;
+
+	for (unsigned int function = 0; function < 256; function++) {
+		if (memchr(known, (int)function, sizeof(known)) == NULL) {
+			assert_refused(BYTES((uint8_t)function, 0, 0), 1,
+				       LW_REASON_UNKNOWN_FUNCTION);
+			assert_error_details(LW_NO_ADDRESS, (int32_t)function, 0);
+			unknown_count++;
+		}
+	}
+	TEST_ASSERT_EQUAL_UINT(256 - sizeof(known), unknown_count);
+}
+
+static void test_success_does_not_clear_the_last_error(void)
+{
+	assert_refused(BYTES(6, 0, 1, 0, 101), 3, LW_REASON_OUT_OF_RANGE);
+	assert_answer(BYTES(6, 0, 1, 0, 5), BYTES(6, 0, 1, 0, 5));
+	assert_error_details(1, 101, 100);
+	TEST_ASSERT_EQUAL_UINT16(LW_REASON_OUT_OF_RANGE, pdu.last_error.reason);
+}
+
+static void test_only_pure_writes_may_be_broadcast(void)
+{
+	static const uint8_t writes[] = {5, 6, 15, 16, 22};
+
+	for (unsigned int function = 0; function < 256; function++) {
+		TEST_ASSERT_EQUAL(memchr(writes, (int)function, sizeof(writes)) != NULL,
+				  lw_pdu_may_broadcast((uint8_t)function));
+	}
+}
+
+static uint32_t next_random(void)
+{
+	static uint32_t state = 2463534242u; /* xorshift32, Marsaglia 2003 */
+
+	state ^= state << 13;
+	state ^= state >> 17;
+	state ^= state << 5;
+	return state;
+}
+
+/* Requests that are nearly right. What is refused changes nothing; nothing is accessed outside. */
+static void test_random_requests(void)
+{
+	static const uint8_t functions[] = {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43, 99};
+	unsigned int refused = 0;
+	unsigned int stored = 0;
+
+	for (unsigned int i = 0; i < 100000; i++) {
+		uint8_t request[256];
+		size_t length = 1 + next_random() % (next_random() % 4 == 0 ? 256 : 12);
+		struct small_bank before = small;
+
+		for (size_t j = 0; j < sizeof(request); j++) {
+			request[j] = next_random() % 2 == 0 ? 0 : (uint8_t)next_random();
+		}
+		request[0] = functions[next_random() % sizeof(functions)];
+		if (request[0] >= 15 && next_random() % 2 == 0) {
+			request[3] = 0;
+			request[4] = (uint8_t)(1 + next_random() % 4);
+			request[5] = (uint8_t)(request[0] == 15 ? 1 : 2 * request[4]);
+			length = 6u + request[5];
+		}
+		ask(request, length);
+		if (response_length == 2 && response[0] == (request[0] | 0x80)) {
+			refused++;
+			before.allow_count = small.allow_count;
+			before.image_count = small.image_count;
+			TEST_ASSERT_EQUAL_MEMORY(&before, &small, sizeof(small));
+		}
+		stored += small.store_count != before.store_count;
+		pdu.listen_only = false;
+	}
+	/* The requests are of both kinds. */
+	TEST_ASSERT_GREATER_THAN(1000, refused);
+	TEST_ASSERT_GREATER_THAN(1000, stored);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_fc01_and_fc02_read_bits);
+	RUN_TEST(test_fc03_and_fc04_read_registers);
+	RUN_TEST(test_fc05_write_single_coil);
+	RUN_TEST(test_fc06_write_single_register);
+	RUN_TEST(test_owners_refusals_become_exceptions);
+	RUN_TEST(test_fc15_write_multiple_coils);
+	RUN_TEST(test_fc16_write_multiple_registers);
+	RUN_TEST(test_fc22_mask_write_register);
+	RUN_TEST(test_fc23_writes_then_reads);
+	RUN_TEST(test_fc23_limits);
+	RUN_TEST(test_fc23_refusals_write_nothing);
+	RUN_TEST(test_fc08_echo);
+	RUN_TEST(test_fc08_reads_each_counter);
+	RUN_TEST(test_fc08_diagnostic_register_and_clear);
+	RUN_TEST(test_fc08_undefined_sub_functions);
+	RUN_TEST(test_fc08_listen_only_until_restart);
+	RUN_TEST(test_fc08_restart);
+	RUN_TEST(test_fc43_streams);
+	RUN_TEST(test_fc43_one_object);
+	RUN_TEST(test_fc43_more_follows);
+	RUN_TEST(test_fc43_refusals);
+	RUN_TEST(test_unknown_functions);
+	RUN_TEST(test_success_does_not_clear_the_last_error);
+	RUN_TEST(test_only_pure_writes_may_be_broadcast);
+	RUN_TEST(test_random_requests);
+	return UNITY_END();
+}
