@@ -141,45 +141,36 @@ def registers_md(map_: Map) -> str:
 
 
 def _tag(space: str, address: int, name: str, **fields: object) -> dict:
-    return {
-        "name": name,
-        "space": space,
-        "address0": address,
-        "reference": reference(space, address),
-        **fields,
-    }
+    place = {"space": space, "address0": address, "reference": reference(space, address)}
+    return {"name": name, **place, **fields}
 
 
 def _point_tags(block: Block, point: Point) -> list[dict]:
-    fields = {
+    """The point and its mirrors."""
+    common = {
         "type": point.type,
         "words": point.words,
         "unit": point.unit,
         "text": point.text,
     }
-    limits = {}
+    tag = _tag(block.space, point.address, point.name, access="r", **common)
+    tag["function_codes"] = "4" if block.space == "input" else "3"
     if point.writable:
-        limits = {"min": point.min, "max": point.max, "default": point.default, "access": "rw"}
-    one_register = "3/6/16" if point.words == 1 else "3/16"
-    codes = {"input": "4", "holding": one_register}[block.space]
-    tags = [
+        codes = "3/6/16" if point.words == 1 else "3/16"
+        tag |= {"function_codes": codes, "access": "rw"}
+        tag |= {"min": point.min, "max": point.max, "default": point.default}
+    mirrors = [
         _tag(
-            block.space,
-            point.address,
-            point.name,
-            **{"function_codes": codes, "access": "r", **fields, **limits},
+            "input",
+            point.address + mirror.address_offset,
+            f"{mirror.name}_{point.name}",
+            function_codes="4",
+            access="r",
+            **common,
         )
+        for mirror in block.mirrors
     ]
-    for mirror in block.mirrors:
-        tags.append(
-            _tag(
-                "input",
-                point.address + mirror.address_offset,
-                f"{mirror.name}_{point.name}",
-                **{"function_codes": "4", "access": "r", **fields},
-            )
-        )
-    return tags
+    return [tag, *mirrors]
 
 
 def tags_csv(map_: Map) -> str:

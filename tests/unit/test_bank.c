@@ -155,6 +155,9 @@ static void test_write_refuses_what_is_not_writable(void)
 	assert_refused(LW_REASON_NOT_WRITABLE, 9, 0, 0);
 	TEST_ASSERT_EQUAL_INT(-ENXIO, WRITE(400, 1));
 	assert_refused(LW_REASON_NOT_WRITABLE, 400, 0, 0);
+	small.sections[0].allow = NULL;
+	TEST_ASSERT_EQUAL_INT(-ENXIO, WRITE(1, 1));
+	assert_refused(LW_REASON_NOT_WRITABLE, 1, 0, 0);
 	TEST_ASSERT_EQUAL_INT(-ENXIO, WRITE(30, 0, 0, 0, 0));
 	assert_refused(LW_REASON_NOT_WRITABLE, 30, 0, 0);
 }
@@ -164,6 +167,8 @@ static void test_write_refuses_half_of_a_pair(void)
 	TEST_ASSERT_EQUAL_INT(-ENXIO, WRITE(2, 1));
 	assert_refused(LW_REASON_HALF_OF_PAIR, 2, 0, 0);
 	TEST_ASSERT_EQUAL_INT(-ENXIO, WRITE(3, 1));
+	assert_refused(LW_REASON_HALF_OF_PAIR, 3, 0, 0);
+	TEST_ASSERT_EQUAL_INT(-ENXIO, WRITE(3, 1, 2));
 	assert_refused(LW_REASON_HALF_OF_PAIR, 3, 0, 0);
 	TEST_ASSERT_EQUAL_INT(-ENXIO, WRITE(1, 1, 0, 10, 0));
 	assert_refused(LW_REASON_HALF_OF_PAIR, 4, 0, 0);

@@ -21,13 +21,13 @@ from levelwind.points import (
     encode,
     enum_label,
     enum_text,
-    offender,
     refusal_text,
     runs,
 )
 
 READ_ATTEMPTS = 3  # a disturbed frame is asked for again; a write never is
 COMMAND_POLL_S = 0.05
+SETTLE_S = 0.2
 EXCEPTION_NAMES = {
     1: "illegal function",
     2: "illegal address",
@@ -35,7 +35,7 @@ EXCEPTION_NAMES = {
     4: "device failure",
     6: "busy",
 }
-HOLDING_FUNCTIONS = (3, 6, 16, 22, 23)
+ILLEGAL_ADDRESS = 2
 COMMAND_STATUS = [
     POINTS[f"command_{name}"]
     for name in ("sequence", "code", "result", "reason", "address", "value", "limit")
@@ -226,6 +226,9 @@ class Device:
                         "has ended."
                     ) from None
                 continue
+            except KeyboardInterrupt:
+                time.sleep(SETTLE_S)  # let the answer under way go by
+                raise
             self.requests += 1
             self.worst_latency_s = max(self.worst_latency_s, time.monotonic() - began)
             return answer
@@ -255,13 +258,10 @@ class Device:
         }
         if error["exception"] != code:
             return RefusedError(f"{name}.")
-        address = error["address"]
-        blamed = (
-            offender(address, error["value"], error["limit"])
-            if error["function"] in HOLDING_FUNCTIONS
-            else f"\naddress {address}"
-        )
-        return RefusedError(f"{name}: {enum_text(Reason, error['reason'])}{blamed}")
+        why = refusal_text(error["reason"], error["address"], error["value"], error["limit"])
+        if code == ILLEGAL_ADDRESS:
+            why += f" (function {error['function']}, address {error['address']})"
+        return RefusedError(f"{name}: {why}")
 
 
 def _parity(line: Line) -> str:

@@ -25,7 +25,7 @@ def lookup(name: str) -> Point:
         return point
     if copy not in point.mirrors:
         raise ToolError(f"{name}: only parameters have the copies active and stored.")
-    return mirror(point, copy)
+    return replace(mirror(point, copy), name=name)
 
 
 def mirror(point: Point, copy: str) -> Point:
@@ -181,18 +181,14 @@ def inhibit_texts(launch_inhibit: int) -> list[str]:
     return [bit.text for bit in LaunchInhibit if launch_inhibit >> bit & 1]
 
 
-def offender(address: int, value: int, limit: int) -> str:
-    """Which register broke which limit, as a second line; empty if none is to blame."""
-    if address == NO_ADDRESS:
-        return ""
-    point = at_address(address)
-    if point is None:
-        return f"\naddress {address}"
-    unit = f" {point.unit}" if point.unit else ""
-    shown = f"\n{point.name} = {format_value(point, value)}{unit}"
-    return f"{shown}, limit {limit}{unit} (holding register {address})"
-
-
 def refusal_text(reason: int, address: int, value: int, limit: int) -> str:
-    """A refusal of the controller in words."""
-    return enum_text(Reason, reason) + offender(address, value, limit)
+    """A refusal of the controller in words: why, and which value broke which limit."""
+    text = enum_text(Reason, reason)
+    point = at_address(address)
+    if reason != Reason.OUT_OF_RANGE and reason < Reason.SLOPE_ABOVE_ONE_STEP:
+        return text  # no value is to blame
+    if point is None:
+        return text if address == NO_ADDRESS else f"{text}\naddress {address}"
+    unit = f" {point.unit}" if point.unit else ""
+    shown = f"{point.name} = {format_value(point, value)}{unit}, limit {limit}{unit}"
+    return f"{text}\n{shown} (holding register {address})"

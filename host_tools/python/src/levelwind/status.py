@@ -88,7 +88,8 @@ def render(status: Mapping[str, int], travel: Travel) -> Panel:
     rows.add_row("Launch", _permit(status))
     rows.add_row("LOS", _los(status))
     rows.add_row("Carriage", _carriage(status, travel))
-    rows.add_row("", _bar(status["position_um"], travel))
+    if flag(status, Flag.INDEXED):
+        rows.add_row("", _bar(status["position_um"], travel))
     rows.add_row("Switches", _switches(status))
     rows.add_row(
         "Rope",
@@ -163,5 +164,3 @@ def _switches(status: Mapping[str, int]) -> Text:
         parts.append(f"{side} {'ACTUATED' if on else 'released'}")
     bad = [name for name in flag_names(status["flags"]) if name.startswith(("wiring", "overtr"))]
     return Text.assemble(", ".join(parts), *((f", {name.upper()}", "bold red") for name in bad))
-
-

@@ -8,10 +8,10 @@ import typer
 from levelwind import backups, script
 from levelwind.connection import Json, with_device
 from levelwind.device import Device
+from levelwind.errors import ToolError
 from levelwind.map_table import Command
 from levelwind.output import console, print_json
 from levelwind.parameter_sets import COPIES, replace_set
-from levelwind.errors import ToolError
 
 YamlFile = Annotated[Path, typer.Argument(help="YAML file.", metavar="FILE")]
 

@@ -14,8 +14,10 @@ from levelwind.errors import ToolError
 from levelwind.map_table import (
     MAP_VERSION,
     POINTS,
+    PRODUCT_CODE,
     PRODUCT_NAME,
     SELF_TEST,
+    VENDOR,
     Command,
     Flag,
     Mode,
@@ -52,7 +54,9 @@ def identify(device: Device, json_output: Json = False) -> None:
         return
     version = ".".join(str(values[f"version_{part}"]) for part in ("major", "minor", "patch"))
     host = POINTS["host"]
-    console.print(f"levelwind {PRODUCT_NAME}, version {version}, map {values['map_version']}")
+    console.print(
+        f"{VENDOR} {PRODUCT_CODE} ({PRODUCT_NAME}), version {version}, map {values['map_version']}"
+    )
     console.print(f"host {format_value(host, values['host'])}, at {device.line}")
     if values["map_version"] != MAP_VERSION:
         console.print(f"This tool knows map {MAP_VERSION}: use the tool of the same release.")
@@ -91,7 +95,6 @@ def index(device: Device) -> None:
         try:
             device.command(Command.INDEX, show, INDEX_LIMIT_S)
         except KeyboardInterrupt:
-            time.sleep(0.2)  # let an answer under way go by
             device.command(Command.STOP)
             raise
     live = read_live(device)

@@ -53,7 +53,9 @@ def get(device: Device, names: Names = None, json_output: Json = False) -> None:
             }
             for p in parameters
         }
-        document |= {p.name: {"value": json_value(p, values[p.name]), "unit": p.unit} for p in others}
+        document |= {
+            p.name: {"value": json_value(p, values[p.name]), "unit": p.unit} for p in others
+        }
         print_json(document)
         return
     if parameters:
@@ -128,9 +130,7 @@ def diff(device: Device, json_output: Json = False) -> None:
     sets = read_sets(device, PARAMETERS)
     differing = [p for p in PARAMETERS if len({sets[copy][p.name] for copy in COPIES}) > 1]
     if json_output:
-        print_json(
-            {p.name: {c: json_value(p, sets[c][p.name]) for c in COPIES} for p in differing}
-        )
+        print_json({p.name: {c: json_value(p, sets[c][p.name]) for c in COPIES} for p in differing})
     elif not differing:
         console.print("Staged, active and stored parameters are equal.")
     else:
@@ -167,7 +167,9 @@ def map_(
             ]
         )
     else:
-        rows = [(p.space, str(p.address), _number(p), p.type, p.name, p.unit, p.text) for p in points]
+        rows = [
+            (p.space, str(p.address), _number(p), p.type, p.name, p.unit, p.text) for p in points
+        ]
         print_table("", ("space", "address>", "1-based>", "type", "name", "unit", "meaning"), rows)
 
 

@@ -1,0 +1,67 @@
+"""Commands for the simulator and its plant."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import Progress
+
+from levelwind import launches, profiles, simulator
+from levelwind.connection import PORT_DEFAULT, Json, Port, with_device
+from levelwind.device import Device
+from levelwind.output import console, print_json, print_table
+from levelwind.plant import check_plant
+
+Speed = Annotated[str | None, typer.Option("--speed", help="Factor of real time, or max.")]
+
+
+def sim(
+    port: Port = PORT_DEFAULT,
+    speed: Speed = None,
+    seed: Annotated[int | None, typer.Option(help="Of everything random in the plant.")] = None,
+    storage: Annotated[Path | None, typer.Option(help="Where SAVE keeps parameters.")] = None,
+    trace: Annotated[Path | None, typer.Option(help="CSV to write, a line per ms.")] = None,
+    unit: Annotated[int | None, typer.Option(help="Modbus unit id.", min=1, max=247)] = None,
+) -> None:
+    """Run the simulator until Ctrl-C: a Modbus slave and a plant. Prints `ready PATH`."""
+    simulator.become(simulator.arguments(port, speed, seed, storage, trace, unit))
+
+
+@with_device
+def launch(
+    device: Device,
+    profile: Annotated[Path, typer.Argument(help="CSV: time_s and one speed column.")],
+    motor_per_encoder: Annotated[
+        float, typer.Option(help="Motor revs per encoder rev, for motor_rpm.", min=0.001)
+    ] = profiles.MOTOR_PER_ENCODER,
+    json_output: Json = False,
+) -> None:
+    """Play a speed profile on the simulated drum. Columns: rope_m_per_s, drum_rpm, motor_rpm or
+    edges_per_s. Ctrl-C stops the drum."""
+    check_plant(device)
+    points = profiles.read(profile, launches.read_gearing(device, motor_per_encoder))
+    launches.upload(device, points)
+    with Progress(console=console, transient=True, disable=json_output) as progress:
+        task = progress.add_task(profile.name, total=1.0)
+        result = launches.play(device, points, lambda done: progress.update(task, completed=done))
+    summary = result.summary() | {"profile_points": len(points)}
+    if json_output:
+        print_json(summary)
+    else:
+        rows = [
+            (name, ", ".join(value) if isinstance(value, list) else str(value))
+            for name, value in summary.items()
+        ]
+        print_table("", ("", "value"), rows)
+
+
+def demo(
+    stay: Annotated[bool, typer.Option("--stay", help="Keep the simulator running.")] = False,
+    speed: Annotated[str, typer.Option(help="Factor of real time, or max.")] = "10",
+    out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out"),
+) -> None:
+    """Simulator, setup, indexing, one launch, checks and a picture. Exit status 0 if all held."""
+    from levelwind.demo import run_demo  # noqa: PLC0415 - matplotlib and numpy take a second
+
+    if not run_demo(out, speed, stay):
+        raise typer.Exit(1)

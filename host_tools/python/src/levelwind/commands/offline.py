@@ -1,0 +1,116 @@
+"""Commands that need no controller: from millimetres to registers, and the law replayed."""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from levelwind import native, planning
+from levelwind.connection import Json
+from levelwind.errors import ToolError
+from levelwind.output import console, print_json, print_table
+from levelwind.points import parse_assignments
+
+Plot = Annotated[Path | None, typer.Option("--plot", help="Picture to write.")]
+TRACE_POINTS = 20_000
+
+
+def _pair(text: str | None, name: str, kind: type) -> tuple[float, float] | tuple[None, None]:
+    """Two numbers with a slash between, as in +80/-80."""
+    if text is None:
+        return None, None
+    try:
+        first, second = text.split("/")
+        return kind(first), kind(second)
+    except ValueError:
+        raise typer.BadParameter(
+            f"{text!r}: give two numbers, as in 80/-80", param_hint=name
+        ) from None
+
+
+def plan(
+    pitch_mm: Annotated[float | None, typer.Option(help="Carriage travel per drum rev.")] = None,
+    lead_mm: Annotated[float | None, typer.Option(help="Carriage travel per screw rev.")] = None,
+    microsteps: Annotated[int | None, typer.Option(help="Microsteps per screw rev.")] = None,
+    ppr: Annotated[int | None, typer.Option(help="Encoder pulses per rev.")] = None,
+    edges: Annotated[int | None, typer.Option(help="Edges used per pulse: 1, 2, 4.")] = None,
+    ratio: Annotated[str | None, typer.Option(help="Encoder/drum revs, as 4/1.")] = None,
+    rope_per_rev_mm: Annotated[float | None, typer.Option(help="Rope per drum rev.")] = None,
+    overshoot_mm: Annotated[float | None, typer.Option(help="Run past a reversal point.")] = None,
+    reversal_mm: Annotated[str | None, typer.Option(help="Reversal points, as +80/-80.")] = None,
+    flange_mm: Annotated[str | None, typer.Option(help="Flanges, as +82.5/-82.5.")] = None,
+    switch_mm: Annotated[str | None, typer.Option(help="Limit switches, as +78/-78.")] = None,
+    assignments: Annotated[
+        list[str] | None, typer.Option("--set", help="Any parameter.", metavar="NAME=VALUE")
+    ] = None,
+    rope_speed: Annotated[
+        float, typer.Option(help="Rope speed for rates and times, m/s.", min=0.01, max=200)
+    ] = 20.0,
+    plot: Plot = None,
+    json_output: Json = False,
+) -> None:
+    """Millimetres in, registers out: what the core makes of a parameter set, or why it refuses."""
+    numerator, denominator = _pair(ratio, "--ratio", int)
+    reversal_plus, reversal_minus = _pair(reversal_mm, "--reversal-mm", float)
+    flange_plus, flange_minus = _pair(flange_mm, "--flange-mm", float)
+    switch_plus, switch_minus = _pair(switch_mm, "--switch-mm", float)
+    in_mm = {
+        "pitch_um": pitch_mm,
+        "screw_lead_um": lead_mm,
+        "rope_per_drum_rev_um": rope_per_rev_mm,
+        "overshoot_um": overshoot_mm,
+        "reversal_plus_um": reversal_plus,
+        "reversal_minus_um": reversal_minus,
+        "flange_plus_um": flange_plus,
+        "flange_minus_um": flange_minus,
+        "switch_plus_um": switch_plus,
+        "switch_minus_um": switch_minus,
+    }
+    plain = {
+        "microsteps_per_rev": microsteps,
+        "encoder_pulses_per_rev": ppr,
+        "encoder_edges_per_pulse": edges,
+        "encoder_ratio_numerator": numerator,
+        "encoder_ratio_denominator": denominator,
+    }
+    given = {name: round(mm * 1000) for name, mm in in_mm.items() if mm is not None}
+    given |= {name: value for name, value in plain.items() if value is not None}
+    result = planning.plan(planning.check(given) | parse_assignments(assignments or []), rope_speed)
+    if plot is not None:
+        planning.plot(result, plot)
+    if json_output:
+        print_json(result.document())
+        return
+    print_table("", ("quantity", "value>", "unit", ""), result.rows())
+    changed = result.changed()
+    if changed:
+        console.print("\nlevelwind set " + " ".join(f"{n}={v}" for n, v in changed.items()))
+
+
+def replay(
+    ka: Annotated[int, typer.Option(help="Slope change per edge in a reversal, Q16.16.")],
+    nr: Annotated[int, typer.Option(help="Edges from sweep slope to zero slope.")],
+    lplus: Annotated[int, typer.Option(help="L+, microsteps.")],
+    lminus: Annotated[int, typer.Option(help="L-, microsteps.")],
+    drum: Annotated[
+        str, typer.Option(help="Runs of drum edges, as +20000,-3000.", metavar="EDGES,...")
+    ],
+    m: Annotated[int, typer.Option(help="Start position, Q16.16.")] = 0,
+    u: Annotated[int | None, typer.Option(help="Start slope, Q16.16; default Ks.")] = None,
+    plot: Plot = None,
+    json_output: Json = False,
+) -> None:
+    """Run the compiled law over runs of forward and backward drum edges."""
+    runs = planning.parse_runs(drum)
+    setup = planning.replay_setup(ka, nr, lplus, lminus, m, ka * nr if u is None else u)
+    result, trace, stride = native.replay(setup, runs, TRACE_POINTS if plot else 0)
+    if plot is not None:
+        if not trace:
+            raise ToolError("There is nothing to draw: no edges.")
+        planning.plot_replay(trace, stride, setup, plot)
+    if json_output:
+        print_json(asdict(result))
+    else:
+        rows = [(name, str(value)) for name, value in asdict(result).items()]
+        print_table("", ("", "value>"), rows)

@@ -1,0 +1,124 @@
+"""Playing a drum speed profile on the simulated plant of a bench."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from levelwind.device import Device
+from levelwind.errors import ToolError
+from levelwind.map_table import POINTS, BenchCommand, Flag, State
+from levelwind.parameter_sets import read_set
+from levelwind.plant import write_plant
+from levelwind.points import encode, enum_label, flag_names
+from levelwind.profiles import MOTOR_PER_ENCODER, Gearing, Profile
+from levelwind.status import read_live
+
+POINTS_PER_APPEND = POINTS["bench_profile"].count // 2
+POLL_S = 0.05
+
+
+@dataclass
+class Launch:
+    """What a launch did, as seen over Modbus."""
+
+    begin: dict[str, int]
+    end: dict[str, int] = field(default_factory=dict)
+    plant_time_s: float = 0.0
+    real_time_s: float = 0.0
+    polls: int = 0
+    max_rope_speed_mm_per_s: int = 0
+    min_rope_speed_mm_per_s: int = 0
+    permit_lost: bool = False
+
+    def gained(self, name: str) -> int:
+        """How much a counter has changed."""
+        return self.end[name] - self.begin[name]
+
+    def summary(self) -> dict[str, object]:
+        """For tables and JSON."""
+        return {
+            "state": enum_label(State, self.end["state"]),
+            "flags": flag_names(self.end["flags"]),
+            "launch_permit_kept": not self.permit_lost,
+            "net_edges": self.gained("net_edges"),
+            "pattern_edges": self.gained("pattern_edges"),
+            "step_pulses": self.gained("steps"),
+            "illegal_transitions": self.gained("illegal_transitions"),
+            "los_recoveries": self.end["los_recoveries"],
+            "rope_m": self.gained("rope_mm") / 1000,
+            "max_rope_speed_m_per_s": self.max_rope_speed_mm_per_s / 1000,
+            "min_rope_speed_m_per_s": self.min_rope_speed_mm_per_s / 1000,
+            "simulated_s": round(self.plant_time_s, 3),
+            "real_s": round(self.real_time_s, 3),
+            "status_polls": self.polls,
+        }
+
+
+def read_gearing(device: Device, motor_per_encoder: float = MOTOR_PER_ENCODER) -> Gearing:
+    """Conversions by the controller's active parameters."""
+    names = ("rope_per_drum_rev_um", "encoder_ratio_numerator", "encoder_ratio_denominator")
+    active = read_set(device, "active", [POINTS[name] for name in names])
+    return Gearing(
+        active["rope_per_drum_rev_um"],
+        device.value("edges_per_1000_drum_revs"),
+        active["encoder_ratio_numerator"] / active["encoder_ratio_denominator"],
+        motor_per_encoder,
+    )
+
+
+def upload(device: Device, profile: Profile) -> None:
+    """Send the points of a profile."""
+    window = POINTS["bench_profile"]
+    write_plant(device, {"bench_command": BenchCommand.PROFILE_CLEAR})
+    for at in range(0, len(profile), POINTS_PER_APPEND):
+        points = profile[at : at + POINTS_PER_APPEND]
+        numbers = [number for point in points for number in point]
+        device.write_registers(window.address, [w for n in numbers for w in encode(window, n)])
+        write_plant(
+            device,
+            {"bench_command": BenchCommand.PROFILE_APPEND, "bench_argument": len(points)},
+        )
+    held = device.value("bench_profile_points")
+    if held != len(profile):
+        raise ToolError(f"The simulator holds {held} of the profile's {len(profile)} points.")
+
+
+def play(device: Device, profile: Profile, progress: Callable[[float], None]) -> Launch:
+    """Play an uploaded profile to its end; the drum stops however this ends."""
+    counters = ("steps", "illegal_transitions")
+    launch = Launch(read_live(device) | device.read_names(*counters))
+    began = time.monotonic()
+    plant_began_ms = device.value("bench_time_ms")
+    duration_s = profile[-1][0] / 1000
+    permit = 1 << Flag.LAUNCH_PERMIT
+    permitted = launch.begin["flags"] & permit
+    try:
+        write_plant(device, {"bench_command": BenchCommand.PROFILE_START})
+        running = True
+        while running:
+            time.sleep(POLL_S)
+            bench = device.read_names("bench_profile_running", "bench_time_ms")
+            live = read_live(device)
+            running = bool(bench["bench_profile_running"])
+            speed = live["rope_speed_mm_per_s"]
+            launch.polls += 1
+            launch.max_rope_speed_mm_per_s = max(launch.max_rope_speed_mm_per_s, speed)
+            launch.min_rope_speed_mm_per_s = min(launch.min_rope_speed_mm_per_s, speed)
+            launch.permit_lost |= bool(permitted and not live["flags"] & permit)
+            launch.plant_time_s = (bench["bench_time_ms"] - plant_began_ms) / 1000
+            progress(min(1.0, launch.plant_time_s / duration_s))
+    finally:
+        device.write({"bench_drum_speed_millirpm": 0})
+    wait_for_rest(device)
+    launch.end = read_live(device) | device.read_names(*counters)
+    launch.real_time_s = time.monotonic() - began
+    return launch
+
+
+def wait_for_rest(device: Device, limit_s: float = 30.0) -> None:
+    """Wait until the controller sees the drum at rest."""
+    deadline = time.monotonic() + limit_s
+    while not device.value("drum_at_rest"):
+        if time.monotonic() > deadline:
+            raise ToolError(f"The drum did not come to rest within {limit_s:g} s.")
+        time.sleep(POLL_S)

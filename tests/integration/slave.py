@@ -1,0 +1,167 @@
+"""What the integration tests drive: a simulator process, a slave by register names, a bare line."""
+
+import os
+import signal
+import subprocess
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import serial
+from levelwind.map_table import POINTS, Command, Flag, Mode, Result, State
+from pymodbus.client import ModbusSerialClient
+
+UNIT = 1
+NATIVE_DIR = Path(os.environ.get("LEVELWIND_NATIVE_DIR", "build/host"))
+TEST_DIR = Path(os.environ.get("LEVELWIND_TEST_DIR", "build/san"))
+
+
+@dataclass
+class Simulator:
+    """A running simulator."""
+
+    port: Path
+    process: subprocess.Popen[str]
+
+    def stop(self, with_signal: int = signal.SIGTERM) -> int:
+        self.process.send_signal(with_signal)
+        return self.process.wait(timeout=10)
+
+
+def start_simulator(folder: Path, *options: str) -> Simulator:
+    """Start the simulator and wait until it says that it answers."""
+    port = folder / "port"
+    process = subprocess.Popen(
+        [str(NATIVE_DIR / "lw_sim"), "--port", str(port), *options],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    assert line == f"ready {port}\n", f"the simulator said {line!r}"
+    return Simulator(port, process)
+
+
+class Slave:
+    """Registers by name, through pymodbus. Knows the map, nothing of the tool's code."""
+
+    def __init__(self, port: str) -> None:
+        self.port = port
+        self.client = ModbusSerialClient(
+            port=port, baudrate=19200, parity="N", stopbits=1, timeout=2, retries=0
+        )
+        assert self.client.connect(), f"cannot open {port}"
+
+    def close(self) -> None:
+        self.client.close()
+
+    def read(self, name: str, offset: int = 0) -> int:
+        """One register value; `offset` 1000 and 2000 reach the active and the stored set."""
+        point = POINTS[name]
+        space = "input" if offset else point.space
+        function = {
+            "input": self.client.read_input_registers,
+            "holding": self.client.read_holding_registers,
+        }[space]
+        answer = function(point.address + offset, count=point.words, device_id=UNIT)
+        assert not answer.isError(), f"{name}: {answer}"
+        value = int.from_bytes(b"".join(word.to_bytes(2, "big") for word in answer.registers), "big")
+        bits = 16 * point.words
+        return value - (1 << bits) if point.type.startswith("i") and value >> (bits - 1) else value
+
+    def write(self, name: str, value: int, *, function: int | None = None) -> int:
+        """Write one value; the exception code, 0 if it was taken."""
+        point = POINTS[name]
+        words = [
+            (value >> (16 * (point.words - 1 - i))) & 0xFFFF for i in range(point.words)
+        ]
+        if function == 6 or (function is None and point.words == 1):
+            answer = self.client.write_register(point.address, words[0], device_id=UNIT)
+        else:
+            answer = self.client.write_registers(point.address, words, device_id=UNIT)
+        return answer.exception_code if answer.isError() else 0
+
+    def command(self, command: Command) -> Result:
+        """Run a command and wait for its end; the answer to a refused request counts as refused."""
+        before = self.read("command_sequence")
+        exception = self.write("command", command)
+        assert self.read("command_sequence") == (before + 1) & 0xFFFF
+        if exception:
+            assert exception == 6
+            return Result.REFUSED
+        self.wait(lambda: self.read("command_result") != Result.IN_PROGRESS)
+        return Result(self.read("command_result"))
+
+    def flag(self, flag: Flag) -> bool:
+        answer = self.client.read_discrete_inputs(int(flag), count=1, device_id=UNIT)
+        assert not answer.isError()
+        return answer.bits[0]
+
+    def wait(self, until: Callable[[], bool], timeout_ms: int = 60_000) -> None:
+        """Poll until something holds; the time limit is the slave's own time."""
+        start_ms = self.read("uptime_ms")
+        while not until():
+            assert self.read("uptime_ms") - start_ms < timeout_ms, "waited too long"
+
+    def settle(self, duration_ms: int) -> None:
+        """Let the slave's time pass."""
+        start_ms = self.read("uptime_ms")
+        self.wait(lambda: self.read("uptime_ms") - start_ms >= duration_ms, 10 * duration_ms)
+
+
+def bring_to_rest(slave: Slave) -> None:
+    """Drum at rest, no fault injected, factory parameters, position unknown, mode track."""
+    slave.write("bench_drum_acceleration_millirpm_per_s", 100_000_000)
+    slave.write("bench_drum_speed_millirpm", 0)
+    for name in ("bench_stall", "bench_side_load_mm_per_s2", "bench_direction_reversed"):
+        slave.write(name, 0)
+    slave.write("mode", Mode.OFF)
+    slave.wait(lambda: slave.read("state") == State.OFF and slave.flag(Flag.DRUM_AT_REST))
+    assert slave.command(Command.FACTORY_ALL) == Result.DONE
+    assert slave.command(Command.APPLY) == Result.DONE
+    assert slave.command(Command.CLEAR_FAULT) == Result.DONE
+    slave.write("trim_plus_um", 0)
+    slave.write("trim_minus_um", 0)
+    slave.write("mode", Mode.TRACK)
+    slave.wait(lambda: slave.read("state") == State.UNINDEXED)
+
+
+class RawLine:
+    """Bytes on the line, for what no library sends."""
+
+    def __init__(self, port: str) -> None:
+        self.line = serial.Serial(port, 19200, timeout=0.3)
+
+    def close(self) -> None:
+        self.line.close()
+
+    def exchange(self, frame: bytes) -> bytes:
+        """Send bytes, and read until the line has been silent for the time-out."""
+        self.line.reset_input_buffer()
+        self.line.write(frame)
+        answer = b""
+        while piece := self.line.read(256 if not answer else max(1, self.line.in_waiting)):
+            answer += piece
+            if answer and crc16(answer) == 0 and len(answer) >= 5:
+                break
+        return answer
+
+    def request(self, pdu: bytes, unit: int = UNIT) -> bytes:
+        """A request with the right CRC; the answer's PDU, empty if there is none."""
+        answer = self.exchange(sealed(bytes([unit]) + pdu))
+        assert not answer or crc16(answer) == 0, answer.hex(" ")
+        return answer[1:-2]
+
+
+def crc16(frame: bytes) -> int:
+    """The CRC of Modbus RTU; 0 over a frame with its CRC."""
+    crc = 0xFFFF
+    for byte in frame:
+        crc ^= byte
+        for _ in range(8):
+            crc = crc >> 1 ^ 0xA001 if crc & 1 else crc >> 1
+    return crc
+
+
+def sealed(frame: bytes) -> bytes:
+    return frame + crc16(frame).to_bytes(2, "little")

@@ -1,0 +1,113 @@
+"""The life of the controller over the line: indexing, tracking, losing synchronization, modes."""
+
+from levelwind.map_table import Command, Fault, Flag, LaunchInhibit, Mode, Reason, Result, State
+from slave import Slave
+
+
+def index(slave: Slave) -> None:
+    assert slave.command(Command.INDEX) == Result.DONE
+    slave.wait(lambda: slave.read("state") == State.TRACKING)
+
+
+def turn_drum(slave: Slave, millirpm: int) -> None:
+    assert slave.write("bench_drum_acceleration_millirpm_per_s", 300_000) == 0
+    assert slave.write("bench_drum_speed_millirpm", millirpm) == 0
+
+
+def test_index_then_permit(slave: Slave) -> None:
+    assert not slave.flag(Flag.LAUNCH_PERMIT)
+    index(slave)
+    assert slave.flag(Flag.INDEXED)
+    assert slave.read("launch_inhibit") == 0
+    assert slave.flag(Flag.LAUNCH_PERMIT)
+    assert abs(slave.read("bench_carriage_um") - slave.read("position_um")) < 300
+
+
+def test_follows_the_drum_both_ways(slave: Slave) -> None:
+    index(slave)
+    slipped = slave.read("bench_slipped_usteps")
+    turn_drum(slave, 500_000)
+    slave.wait(lambda: slave.read("pattern_edges") > 100_000)
+    turn_drum(slave, -400_000)
+    slave.wait(lambda: slave.read("pattern_edges") < 50_000)
+    turn_drum(slave, 0)
+    slave.wait(lambda: slave.flag(Flag.DRUM_AT_REST))
+    assert not slave.flag(Flag.LOS)
+    assert slave.read("bench_slipped_usteps") == slipped
+    assert abs(slave.read("bench_carriage_um") - slave.read("position_um")) < 300
+    assert slave.read("illegal_transitions") == 0
+
+
+def test_hand_over_waits_for_the_drum_to_rest(slave: Slave) -> None:
+    assert slave.write("mode", Mode.CENTRE) == 0
+    assert slave.command(Command.INDEX) == Result.DONE
+    slave.wait(lambda: slave.read("state") == State.CENTRED)
+    turn_drum(slave, 100_000)
+    slave.wait(lambda: not slave.flag(Flag.DRUM_AT_REST))
+    assert slave.write("mode", Mode.TRACK) == 0
+    slave.settle(2_000)
+    assert slave.read("state") == State.CENTRED
+    assert abs(slave.read("position_um")) <= 10
+    turn_drum(slave, 0)
+    slave.wait(lambda: slave.read("state") == State.TRACKING)
+    assert slave.flag(Flag.DRUM_AT_REST)
+
+
+def test_index_is_refused_while_the_drum_turns(slave: Slave) -> None:
+    turn_drum(slave, 100_000)
+    slave.wait(lambda: not slave.flag(Flag.DRUM_AT_REST))
+    assert slave.command(Command.INDEX) == Result.REFUSED
+    assert slave.read("command_reason") == Reason.DRUM_MOVING
+    assert slave.read("state") == State.UNINDEXED
+
+
+def test_lost_synchronization_is_told_until_indexed_again(slave: Slave) -> None:
+    index(slave)
+    turn_drum(slave, 400_000)
+    slave.wait(lambda: slave.read("position_um") > 0)
+    slave.write("bench_stall", 1)
+    slave.wait(lambda: slave.flag(Flag.LOS))
+    assert slave.read("los1_plus_count") + slave.read("los1_minus_count") > 0
+    slave.write("bench_stall", 0)
+    slave.wait(lambda: slave.read("los_recoveries") > 0)
+    assert slave.read("state") == State.TRACKING
+    assert slave.read("launch_inhibit") & 1 << LaunchInhibit.LOS
+    turn_drum(slave, 0)
+    slave.wait(lambda: slave.flag(Flag.DRUM_AT_REST))
+    assert slave.flag(Flag.LOS)
+    index(slave)
+    assert not slave.flag(Flag.LOS)
+    assert slave.flag(Flag.LAUNCH_PERMIT)
+
+
+def test_jog_is_held_and_ends_by_itself(slave: Slave) -> None:
+    assert slave.write("jog", 1) == 0
+    slave.wait(lambda: slave.read("state") == State.JOGGING)
+    slave.wait(lambda: slave.read("state") == State.UNINDEXED, 5_000)
+    assert slave.read("jog") == 0
+
+
+def test_stop_ends_indexing(slave: Slave) -> None:
+    assert slave.write("command", Command.INDEX) == 0
+    slave.wait(lambda: slave.read("state") == State.SEEKING)
+    assert slave.command(Command.STOP) == Result.DONE
+    slave.wait(lambda: slave.read("state") == State.UNINDEXED, 5_000)
+    assert not slave.flag(Flag.INDEXED)
+
+
+def test_reversed_stepper_is_named(slave: Slave) -> None:
+    slave.write("bench_direction_reversed", 1)
+    assert slave.command(Command.INDEX) == Result.FAILED
+    assert slave.read("command_reason") == Reason.FAULTED
+    assert slave.read("fault") == Fault.INDEX_WRONG_SWITCH
+    assert not slave.flag(Flag.LAUNCH_PERMIT)
+
+
+def test_power_cut_forgets_the_index(slave: Slave) -> None:
+    from levelwind.map_table import BenchCommand
+
+    index(slave)
+    slave.write("bench_command", BenchCommand.POWER_CUT)
+    slave.wait(lambda: slave.read("state") == State.UNINDEXED)
+    assert not slave.flag(Flag.INDEXED)
+    assert not slave.flag(Flag.LAUNCH_PERMIT)

@@ -1,0 +1,237 @@
+"""A whole machine in this process: controller and plant on a virtual clock, no line between.
+
+Everything goes the way that a master goes: as Modbus requests, by the names of the map. Only
+`inject` and `truth` look behind the controller's pins.
+"""
+
+import ctypes
+import functools
+from collections.abc import Callable
+from ctypes import POINTER, c_bool, c_double, c_int, c_int32, c_int64, c_size_t, c_uint8, c_uint64
+from enum import IntEnum
+
+from levelwind import native
+from levelwind.map_table import POINTS, Command, Fault, Flag, Mode, Reason, Result, State
+from levelwind.points import decode, encode, lookup, runs
+
+PDU_MAX = 253
+REGISTERS_MAX = 120
+USTEP = 65536
+
+MILLIRPM_PER_EDGE_PER_S = 60_000 / 2880
+"""Drum speed by the default parameters: 360 pulses, 2 edges, 4 encoder revolutions per drum's."""
+
+
+class PlantFault(IntEnum):
+    """enum lw_plant_fault: what the registers of the bench cannot do."""
+
+    STALL_MS = 0
+    SLIP_USTEPS = 1
+    SIDE_LOAD_MM_PER_S2 = 2
+
+
+class Truth(ctypes.Structure):
+    """struct lw_plant_truth: what is really the case."""
+
+    _fields_ = (
+        ("time_ns", c_uint64),
+        ("drum_transitions", c_int64),
+        ("drum_milli_rpm", c_double),
+        ("carriage_um", c_double),
+        ("carriage_usteps", c_double),
+        ("carriage_um_per_s", c_double),
+        ("commanded_usteps", c_int64),
+        ("lag_usteps", c_double),
+        ("step_pulses", c_uint64),
+        ("slipped_usteps", c_int64),
+        ("pole_slips", c_uint64),
+        ("in_sync", c_bool),
+    )
+
+
+class Refused(Exception):
+    """The controller answered a Modbus exception."""
+
+    def __init__(self, exception: int, reason: Reason) -> None:
+        super().__init__(f"Modbus exception {exception:02d}, {reason.label}")
+        self.exception = exception
+        self.reason = reason
+
+
+@functools.cache
+def _library() -> ctypes.CDLL:
+    library = ctypes.CDLL(str(native.find(native.LIBRARY)))
+    world = ctypes.c_void_p
+    for name, result, arguments in (
+        ("create", world, (c_uint64, c_int32)),
+        ("destroy", None, (world,)),
+        ("run_ns", None, (world, c_uint64)),
+        ("request", c_size_t, (world, ctypes.c_char_p, c_size_t, POINTER(c_uint8))),
+        ("inject", c_int, (world, c_int, c_int32)),
+        ("truth", None, (world, POINTER(Truth))),
+    ):
+        function = getattr(library, f"lw_native_world_{name}")
+        function.restype, function.argtypes = result, arguments
+    return library
+
+
+class World:
+    """A machine that has just been switched on."""
+
+    def __init__(self, seed: int = 1, carriage_um: int = 0, **parameters: int) -> None:
+        self._library = _library()
+        self._world = self._library.lw_native_world_create(seed, carriage_um)
+        assert self._world, f"no world with the carriage at {carriage_um} um"
+        self._answer = (c_uint8 * PDU_MAX)()
+        self.run(0.3)  # the drum counts as at rest after rest_time_ms
+        if parameters:
+            self.apply(**parameters)
+
+    def __del__(self) -> None:
+        if getattr(self, "_world", None):
+            self._library.lw_native_world_destroy(self._world)
+
+    # ---- time ----------------------------------------------------------------------------------
+
+    def run(self, seconds: float) -> None:
+        """Let virtual time pass."""
+        self._library.lw_native_world_run_ns(self._world, round(seconds * 1e9))
+
+    def run_until(
+        self, condition: Callable[[], bool], limit_s: float = 30.0, step_s: float = 0.001
+    ) -> float:
+        """Run until a condition holds, looking at it every step; how long it took."""
+        for step in range(round(limit_s / step_s)):
+            if condition():
+                return step * step_s
+            self.run(step_s)
+        raise AssertionError(f"not within {limit_s:g} s; {self}")
+
+    # ---- Modbus --------------------------------------------------------------------------------
+
+    def request(self, pdu: bytes) -> bytes:
+        """One Modbus request, function code and data, and its answer."""
+        length = self._library.lw_native_world_request(self._world, pdu, len(pdu), self._answer)
+        return bytes(self._answer[:length])
+
+    def _checked(self, function: int, address: int, data: bytes) -> bytes:
+        answer = self.request(bytes((function,)) + address.to_bytes(2, "big") + data)
+        if answer[0] & 0x80:
+            raise Refused(answer[1], Reason(self.value("last_error_reason")))
+        return answer
+
+    def read(self, *names: str) -> dict[str, int]:
+        """Registers by name ("active.pitch_um" for a copy). Neighbours come as one snapshot."""
+        points = [lookup(name) for name in names]
+        values: dict[str, int] = {}
+        for space, function in (("holding", 3), ("input", 4)):
+            for run in runs((p for p in points if p.space == space), REGISTERS_MAX):
+                answer = self._checked(function, run.address, run.count.to_bytes(2, "big"))
+                words = [int.from_bytes(answer[i : i + 2], "big") for i in range(2, len(answer), 2)]
+                for point in run.points:
+                    values[point.name] = decode(point, words[point.address - run.address :])
+        return values
+
+    def value(self, name: str) -> int:
+        """One register."""
+        point = lookup(name)
+        function = 3 if point.space == "holding" else 4
+        answer = self._checked(function, point.address, point.words.to_bytes(2, "big"))
+        return int.from_bytes(answer[2:], "big", signed=point.type.startswith("i"))
+
+    def write(self, **values: int) -> None:
+        """Write holding registers by name; raises Refused."""
+        for run in runs((POINTS[name] for name in values), REGISTERS_MAX):
+            words = [word for point in run.points for word in encode(point, values[point.name])]
+            data = b"".join(word.to_bytes(2, "big") for word in words)
+            self._checked(16, run.address, run.count.to_bytes(2, "big") + bytes((len(data),)) + data)
+
+    # ---- the controller ------------------------------------------------------------------------
+
+    @property
+    def state(self) -> State:
+        """What the controller is doing."""
+        return State(self.value("state"))
+
+    @property
+    def fault(self) -> Fault:
+        """Why it stopped."""
+        return Fault(self.value("fault"))
+
+    @property
+    def flags(self) -> set[str]:
+        """Names of the flags that are set."""
+        bits = self.value("flags")
+        return {flag.label for flag in Flag if bits >> flag & 1}
+
+    @property
+    def permit(self) -> bool:
+        """Launch permit."""
+        return "launch_permit" in self.flags
+
+    def command(self, command: Command, limit_s: float = 60.0) -> Result:
+        """Give a command, wait for its end. Raises Refused where the request itself is refused."""
+        self.write(command=command)
+        self.run_until(lambda: self.value("command_result") != Result.IN_PROGRESS, limit_s, 0.01)
+        return Result(self.value("command_result"))
+
+    def apply(self, **parameters: int) -> None:
+        """Change parameters."""
+        self.write(**parameters)
+        self.command(Command.APPLY)
+        reason = Reason(self.value("command_reason"))
+        assert self.value("command_result") == Result.DONE, reason.label
+
+    def index(self) -> "World":
+        """Index, and hand over to the drum as far as the mode asks for it."""
+        assert self.command(Command.INDEX) == Result.DONE, f"{self}"
+        self.run(0.01)
+        return self
+
+    def index_faulted(self) -> Fault:
+        """Index a broken machine; the fault that it ends with."""
+        assert self.command(Command.INDEX) == Result.FAILED, f"{self}"
+        assert self.state == State.FAULT
+        return self.fault
+
+    def mode(self, mode: Mode) -> None:
+        """Ask for a mode."""
+        self.write(mode=mode)
+
+    # ---- the machine ---------------------------------------------------------------------------
+
+    def drum(self, edges_per_s: float, edges_per_s2: float = 24_000.0) -> None:
+        """Let the drum go to a speed, hauling in where positive."""
+        self.write(
+            bench_drum_acceleration_millirpm_per_s=round(edges_per_s2 * MILLIRPM_PER_EDGE_PER_S),
+            bench_drum_speed_millirpm=round(edges_per_s * MILLIRPM_PER_EDGE_PER_S),
+        )
+
+    def stop_drum(self) -> None:
+        """Stop the drum, and wait until the controller sees it at rest."""
+        self.drum(0)
+        self.run_until(lambda: "drum_at_rest" in self.flags, step_s=0.01)
+
+    def inject(self, fault: PlantFault, argument: int) -> None:
+        """A fault of the machine."""
+        status = self._library.lw_native_world_inject(self._world, fault, argument)
+        assert status == 0, f"{fault.name} {argument}: errno {-status}"
+
+    @property
+    def truth(self) -> Truth:
+        """What is really the case."""
+        truth = Truth()
+        self._library.lw_native_world_truth(self._world, ctypes.byref(truth))
+        return truth
+
+    @property
+    def error_usteps(self) -> float:
+        """Real position minus the position that the controller believes in."""
+        return self.truth.carriage_usteps - self.value("m") / USTEP
+
+    def __str__(self) -> str:
+        return (
+            f"{self.state.label}, fault {self.fault.label}, "
+            f"{Reason(self.value('command_reason')).label}, {sorted(self.flags)}, "
+            f"at {self.value('position_um')} um, really {self.truth.carriage_um:.0f} um"
+        )
