@@ -192,4 +192,7 @@ void lw_bench_init(struct lw_world *world)
 			       sizeof(int32_t));
 		}
 	}
+	/* The plant's own default is another one. */
+	(void)lw_plant_drum_acceleration(
+		&world->plant, world->bench.bench_drum_acceleration_millirpm_per_s / 1000.0);
 }

@@ -6,13 +6,17 @@ Everything goes the way that a master goes: as Modbus requests, by the names of 
 
 import ctypes
 import functools
+import struct
 from collections.abc import Callable
 from ctypes import POINTER, c_bool, c_double, c_int, c_int32, c_int64, c_size_t, c_uint8, c_uint64
 from enum import IntEnum
+from typing import NamedTuple
 
 from levelwind import native
+from levelwind.ideal_screw import Orbit, Screw
+from levelwind.ideal_screw import State as LawState
 from levelwind.map_table import POINTS, Command, Fault, Flag, Mode, Reason, Result, State
-from levelwind.points import decode, encode, lookup, runs
+from levelwind.points import encode, lookup, runs
 
 PDU_MAX = 253
 REGISTERS_MAX = 120
@@ -75,6 +79,31 @@ def _library() -> ctypes.CDLL:
     return library
 
 
+class Slice(NamedTuple):
+    """Where a value stands in an answer."""
+
+    name: str
+    begin: int
+    end: int
+    signed: bool
+
+
+@functools.cache
+def _plan(names: tuple[str, ...]) -> list[tuple[bytes, list[Slice]]]:
+    """The requests that read these registers, and where in their answers the values stand."""
+    points = [lookup(name) for name in names]
+    plan = []
+    for space, function in (("holding", 3), ("input", 4)):
+        for run in runs((p for p in points if p.space == space), REGISTERS_MAX):
+            slices = []
+            for point in run.points:
+                at = 2 + 2 * (point.address - run.address)
+                signed = point.type.startswith("i")
+                slices.append(Slice(point.name, at, at + 2 * point.words, signed))
+            plan.append((struct.pack(">BHH", function, run.address, run.count), slices))
+    return plan
+
+
 class World:
     """A machine that has just been switched on."""
 
@@ -114,37 +143,31 @@ class World:
         length = self._library.lw_native_world_request(self._world, pdu, len(pdu), self._answer)
         return bytes(self._answer[:length])
 
-    def _checked(self, function: int, address: int, data: bytes) -> bytes:
-        answer = self.request(bytes((function,)) + address.to_bytes(2, "big") + data)
+    def _checked(self, pdu: bytes) -> bytes:
+        answer = self.request(pdu)
         if answer[0] & 0x80:
             raise Refused(answer[1], Reason(self.value("last_error_reason")))
         return answer
 
     def read(self, *names: str) -> dict[str, int]:
         """Registers by name ("active.pitch_um" for a copy). Neighbours come as one snapshot."""
-        points = [lookup(name) for name in names]
-        values: dict[str, int] = {}
-        for space, function in (("holding", 3), ("input", 4)):
-            for run in runs((p for p in points if p.space == space), REGISTERS_MAX):
-                answer = self._checked(function, run.address, run.count.to_bytes(2, "big"))
-                words = [int.from_bytes(answer[i : i + 2], "big") for i in range(2, len(answer), 2)]
-                for point in run.points:
-                    values[point.name] = decode(point, words[point.address - run.address :])
+        values = {}
+        for pdu, slices in _plan(names):
+            answer = self._checked(pdu)
+            for name, begin, end, signed in slices:
+                values[name] = int.from_bytes(answer[begin:end], "big", signed=signed)
         return values
 
     def value(self, name: str) -> int:
         """One register."""
-        point = lookup(name)
-        function = 3 if point.space == "holding" else 4
-        answer = self._checked(function, point.address, point.words.to_bytes(2, "big"))
-        return int.from_bytes(answer[2:], "big", signed=point.type.startswith("i"))
+        return self.read(name)[name]
 
     def write(self, **values: int) -> None:
         """Write holding registers by name; raises Refused."""
         for run in runs((POINTS[name] for name in values), REGISTERS_MAX):
             words = [word for point in run.points for word in encode(point, values[point.name])]
-            data = b"".join(word.to_bytes(2, "big") for word in words)
-            self._checked(16, run.address, run.count.to_bytes(2, "big") + bytes((len(data),)) + data)
+            head = struct.pack(">BHHB", 16, run.address, run.count, 2 * run.count)
+            self._checked(head + struct.pack(f">{run.count}H", *words))
 
     # ---- the controller ------------------------------------------------------------------------
 
@@ -228,6 +251,36 @@ class World:
     def error_usteps(self) -> float:
         """Real position minus the position that the controller believes in."""
         return self.truth.carriage_usteps - self.value("m") / USTEP
+
+    # ---- the pattern ---------------------------------------------------------------------------
+
+    def orbit(self) -> Orbit:
+        """The ideal reversing screw from here on: from a hand-over, by pattern_edges."""
+        at = self.read("m", "u", "ka", "nr", "reversal_plus_usteps", "reversal_minus_usteps")
+        at |= self.read("dwell_plus_edges", "dwell_minus_edges", "pattern_edges")
+        assert at["pattern_edges"] == 0
+        screw = Screw(
+            at["ka"],
+            at["nr"],
+            at["reversal_plus_usteps"],
+            at["reversal_minus_usteps"],
+            at["dwell_plus_edges"],
+            at["dwell_minus_edges"],
+        )
+        return screw.orbit(LawState(at["m"], at["u"]))
+
+    def check_follows(self, orbit: Orbit) -> None:
+        """The controller is where the ideal screw is, to the last bit."""
+        at = self.read("m", "u", "pattern_edges")
+        ideal = orbit.after(at["pattern_edges"])
+        assert (at["m"], at["u"]) == (ideal.m, ideal.u), f"after {at['pattern_edges']} edges"
+
+    def in_sweep(self) -> bool:
+        """The position lies between the reversal points."""
+        at = self.read("position_usteps", "reversal_plus_usteps", "reversal_minus_usteps")
+        return (
+            at["reversal_minus_usteps"] < at["position_usteps"] < at["reversal_plus_usteps"]
+        )
 
     def __str__(self) -> str:
         return (

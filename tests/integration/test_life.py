@@ -1,6 +1,6 @@
 """The life of the controller over the line: indexing, tracking, losing synchronization, modes."""
 
-from levelwind.map_table import Command, Fault, Flag, LaunchInhibit, Mode, Reason, Result, State
+from levelwind.map_table import BenchCommand, Command, Fault, Flag, LaunchInhibit, Mode, Reason, Result, State
 from slave import Slave
 
 
@@ -104,10 +104,23 @@ def test_reversed_stepper_is_named(slave: Slave) -> None:
 
 
 def test_power_cut_forgets_the_index(slave: Slave) -> None:
-    from levelwind.map_table import BenchCommand
-
     index(slave)
     slave.write("bench_command", BenchCommand.POWER_CUT)
     slave.wait(lambda: slave.read("state") == State.UNINDEXED)
     assert not slave.flag(Flag.INDEXED)
     assert not slave.flag(Flag.LAUNCH_PERMIT)
+
+
+def test_all_setpoints_can_be_written_in_every_cycle(slave: Slave) -> None:
+    def cycle() -> bool:
+        words = [0, Mode.TRACK, 0, 0xFE0C, 500]  # command, mode, jog, trims -500 and +500 um
+        answer = slave.client.write_registers(0, words, device_id=1)
+        return not answer.isError()
+
+    assert cycle()
+    assert slave.write("command", Command.INDEX) == 0
+    slave.wait(lambda: slave.read("state") == State.SEEKING)
+    assert cycle()
+    slave.wait(lambda: cycle() and slave.read("state") == State.TRACKING)
+    assert slave.read("reversal_plus_usteps") == 7_950
+    assert slave.read("reversal_minus_usteps") == -7_950

@@ -17,7 +17,7 @@ static const struct levelwind_value state_values[] = {
 		"Indexed and at rest. Follows the drum as soon as the mode is track and the drum is at rest",
 	},
 	{7, "tracking", "Following the drum"},
-	{8, "centring", "Moving to the centre"},
+	{8, "centring", "Moving to the centre, or back into the sweep before a hand-over"},
 	{9, "centred", "Held at the centre, the drum is not followed"},
 	{10, "jogging", "Moving by hand"},
 	{11, "off", "Stepper without current, position unknown"},
@@ -117,7 +117,6 @@ static const struct levelwind_value reason_values[] = {
 	{11, "busy_moving", "Refused while the carriage moves by itself: wait or give stop"},
 	{12, "busy_saving", "Refused while parameters are being saved: try again"},
 	{13, "drum_moving", "The drum must be at rest for this"},
-	{14, "in_fault", "Stopped by a fault: remove the cause, then clear_fault or index"},
 	{15, "cause_present", "The cause of the fault is still there"},
 	{16, "mode_off", "Refused in mode off: set the mode to track or centre first"},
 	{17, "overtravel", "Only motion away from the active overtravel switch is allowed"},
@@ -248,7 +247,7 @@ static const struct levelwind_value flag_values[] = {
 	{21, "dirty", "Active parameters differ from the stored ones: SAVE to keep them"},
 	{
 		22, "defaults_loaded",
-		"No usable stored set was found at power-up: factory values are active",
+		"No usable stored set was found at power-up: factory values are active until a SAVE",
 	},
 	{23, "trim_pending", "A trim waits for the carriage to be in the sweep"},
 	{24, "correction_pending", "A re-index correction waits for the end of the reversal"},
@@ -869,7 +868,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_reason", .unit = "", .text = "Why it was refused or failed",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 403,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_reason),
-		.values = reason_values, .value_count = 40,
+		.values = reason_values, .value_count = 39,
 	},
 	{
 		.name = "command_address", .unit = "",
@@ -892,7 +891,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Why the last refused request was refused", .block = LEVELWIND_BLOCK_STATUS,
 		.type = LEVELWIND_TYPE_U16, .address = 410, .words = 1,
 		.offset = offsetof(struct levelwind_status, last_error_reason),
-		.values = reason_values, .value_count = 40,
+		.values = reason_values, .value_count = 39,
 	},
 	{
 		.name = "last_error_function", .unit = "", .text = "Its function code",

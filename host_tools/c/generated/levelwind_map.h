@@ -34,7 +34,7 @@ enum levelwind_state {
 	LEVELWIND_STATE_READY = 6,
 	/** Following the drum */
 	LEVELWIND_STATE_TRACKING = 7,
-	/** Moving to the centre */
+	/** Moving to the centre, or back into the sweep before a hand-over */
 	LEVELWIND_STATE_CENTRING = 8,
 	/** Held at the centre, the drum is not followed */
 	LEVELWIND_STATE_CENTRED = 9,
@@ -169,8 +169,6 @@ enum levelwind_reason {
 	LEVELWIND_REASON_BUSY_SAVING = 12,
 	/** The drum must be at rest for this */
 	LEVELWIND_REASON_DRUM_MOVING = 13,
-	/** Stopped by a fault: remove the cause, then clear_fault or index */
-	LEVELWIND_REASON_IN_FAULT = 14,
 	/** The cause of the fault is still there */
 	LEVELWIND_REASON_CAUSE_PRESENT = 15,
 	/** Refused in mode off: set the mode to track or centre first */
@@ -334,7 +332,7 @@ enum levelwind_flag {
 	LEVELWIND_FLAG_STAGED = 20,
 	/** Active parameters differ from the stored ones: SAVE to keep them */
 	LEVELWIND_FLAG_DIRTY = 21,
-	/** No usable stored set was found at power-up: factory values are active */
+	/** No usable stored set was found at power-up: factory values are active until a SAVE */
 	LEVELWIND_FLAG_DEFAULTS_LOADED = 22,
 	/** A trim waits for the carriage to be in the sweep */
 	LEVELWIND_FLAG_TRIM_PENDING = 23,

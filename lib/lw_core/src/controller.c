@@ -362,9 +362,6 @@ void lw_controller_jog(struct lw_controller *controller, int direction, uint64_t
 	int32_t target_usteps = direction * controller->derived->travel_usteps;
 	enum lw_state rest_state = controller->fault ? LW_STATE_FAULT : LW_STATE_UNINDEXED;
 
-	if (controller->state == LW_STATE_TRACKING) {
-		lw_tracking_leave(controller);
-	}
 	if (controller->indexed) {
 		const struct lw_law_window window = lw_controller_track_window(controller);
 
@@ -372,10 +369,11 @@ void lw_controller_jog(struct lw_controller *controller, int direction, uint64_t
 		target_usteps = direction > 0 ? lw_law_pos_usteps(window.sweep_end) - 2
 					      : lw_law_pos_usteps(window.sweep_begin) + 2;
 		rest_state = LW_STATE_READY;
-		if (direction * (target_usteps - lw_law_pos_usteps(controller->motion.law.m)) <=
-		    0) {
-			controller->state = LW_STATE_READY;
+		if (direction * (target_usteps - lw_law_pos_usteps(controller->motion.law.m)) <= 0) {
 			return; /* at the limit already */
+		}
+		if (controller->state == LW_STATE_TRACKING) {
+			lw_tracking_leave(controller);
 		}
 	} else {
 		controller->motion.law = (struct lw_law){0};
@@ -445,6 +443,23 @@ static void check_speed(struct lw_controller *controller)
 	}
 }
 
+/** Follow the drum, from inside the sweep or from the pattern as it was left. */
+static void hand_over(struct lw_controller *controller)
+{
+	const struct lw_law_window window = lw_controller_track_window(controller);
+	const int region = lw_law_region(&window, controller->motion.law.m);
+
+	if (controller->on_orbit || region == 0) {
+		lw_tracking_start(controller);
+	} else {
+		/* The sweep's slope in a reversal would stay wrong for ever: go inside first. */
+		lw_homing_move_to(controller,
+				  region < 0 ? lw_law_pos_usteps(window.sweep_end) - 2
+					     : lw_law_pos_usteps(window.sweep_begin) + 2,
+				  LW_STATE_CENTRING, LW_STATE_READY);
+	}
+}
+
 /** Bring the requested mode into force. */
 static void serve_mode(struct lw_controller *controller)
 {
@@ -475,7 +490,7 @@ static void serve_mode(struct lw_controller *controller)
 		if ((controller->state == LW_STATE_READY ||
 		     controller->state == LW_STATE_CENTRED) &&
 		    controller->drum_at_rest) {
-			lw_tracking_start(controller);
+			hand_over(controller);
 		}
 	} else if (controller->state == LW_STATE_TRACKING || controller->state == LW_STATE_READY) {
 		if (controller->state == LW_STATE_TRACKING) {

@@ -45,7 +45,7 @@ void lw_homing_halt(struct lw_controller *controller, enum lw_state rest_state);
 /* tracking.c */
 /** Follow the drum from here. */
 void lw_tracking_start(struct lw_controller *controller);
-/** Stop following a resting drum; the carriage stands, its position is known. */
+/** Stop following a resting drum. The carriage stands; it can go on as if nothing had been. */
 void lw_tracking_leave(struct lw_controller *controller);
 void lw_tracking_tick(struct lw_controller *controller,
 		      const struct lw_controller_trigger *triggers);

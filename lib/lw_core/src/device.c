@@ -142,6 +142,7 @@ void lw_device_record_written(struct lw_device *device, int result)
 	device->save_pending = false;
 	if (result == 0) {
 		device->stored = device->saving;
+		device->defaults_loaded = false;
 	}
 	if (told) {
 		device->command.result = result == 0 ? LW_RESULT_DONE : LW_RESULT_FAILED;

@@ -94,10 +94,39 @@ static const void *setpoints_image(void *context)
 	return &device->setpoints_image;
 }
 
+/** The farthest trim from 0 toward a refused one that passes; 0 always does. */
+static int32_t farthest_trim_um(const struct lw_device *device, const struct lw_point *point,
+				int32_t refused_um)
+{
+	const struct lw_controller *controller = &device->controller;
+	const bool plus = point->address == LW_ADDRESS_TRIM_PLUS_UM;
+	struct lw_refusal why;
+	int32_t passes_um = 0;
+
+	while (refused_um - passes_um > 1 || passes_um - refused_um > 1) {
+		const int32_t middle_um = passes_um + (refused_um - passes_um) / 2;
+
+		if (lw_params_check_trim(&device->active, &device->derived,
+					 plus ? middle_um : controller->trim_plus_um,
+					 plus ? controller->trim_minus_um : middle_um, &why)) {
+			refused_um = middle_um;
+		} else {
+			passes_um = middle_um;
+		}
+	}
+	return passes_um;
+}
+
 static int allow_trim(const struct lw_device *device, int32_t plus_um, int32_t minus_um,
 		      const struct lw_point *point, int32_t value, struct lw_refusal *why)
 {
-	if (lw_controller_moving(&device->controller)) {
+	const struct lw_controller *controller = &device->controller;
+
+	/* A master may write all its set-points in every cycle: no change is no trim. */
+	if (plus_um == controller->trim_plus_um && minus_um == controller->trim_minus_um) {
+		return 0;
+	}
+	if (lw_controller_moving(controller)) {
 		why->reason = LW_REASON_BUSY_MOVING;
 		return -EBUSY;
 	}
@@ -106,9 +135,10 @@ static int allow_trim(const struct lw_device *device, int32_t plus_um, int32_t m
 		lw_params_check_trim(&device->active, &device->derived, plus_um, minus_um, why);
 
 	if (ret) {
-		/* Blame the register that was written. */
+		/* Blame the register that was written, and name the farthest trim that passes. */
 		why->address = point->address;
 		why->value = value;
+		why->limit = farthest_trim_um(device, point, value);
 	}
 	return ret;
 }
@@ -154,10 +184,14 @@ static void setpoints_store(void *context, const struct lw_point *point, uint16_
 		lw_controller_jog(controller, value, device->now_us);
 		break;
 	case LW_ADDRESS_TRIM_PLUS_UM:
-		lw_controller_set_trim(controller, value, controller->trim_minus_um);
+		if (value != controller->trim_plus_um) {
+			lw_controller_set_trim(controller, value, controller->trim_minus_um);
+		}
 		break;
 	case LW_ADDRESS_TRIM_MINUS_UM:
-		lw_controller_set_trim(controller, controller->trim_plus_um, value);
+		if (value != controller->trim_minus_um) {
+			lw_controller_set_trim(controller, controller->trim_plus_um, value);
+		}
 		break;
 	default:
 		break;

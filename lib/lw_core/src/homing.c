@@ -35,6 +35,10 @@ void lw_homing_move_to(struct lw_controller *controller, int32_t target_usteps,
 {
 	struct lw_law_window window;
 
+	/* Whatever the pattern was doing, the carriage is at rest now. */
+	controller->motion.law.u = 0;
+	controller->motion.law.dwell_edges = 0;
+	controller->on_orbit = false;
 	controller->rest_state = rest_state;
 	if (lw_move_to(&controller->motion.law, &window, controller->derived->ka,
 		       controller->derived->nr, target_usteps)) {
@@ -138,19 +142,21 @@ static void tick_seeking(struct lw_controller *controller,
 	const struct lw_derived *derived = controller->derived;
 	const int side = (int)controller->params->index_switch;
 	const int direction = lw_side_direction(side);
+	const int32_t trigger_usteps = triggers[side].at.pos_usteps;
 
 	if (controller->halting) {
 		return;
 	}
 	if (controller->limit[!side].active) {
 		lw_controller_fail(controller, LW_FAULT_INDEX_WRONG_SWITCH);
-	} else if (triggers[side].taken && direction * triggers[side].at.pos_usteps < 0) {
+	} else if (triggers[side].taken &&
+		   (direction > 0 ? trigger_usteps < 0 : trigger_usteps >= 0)) {
 		/* Still on the ramp, which ends at 0: come again from further away. */
 		lw_homing_halt(controller, LW_STATE_BACKING_OFF);
 	} else if (triggers[side].taken) {
 		lw_controller_request(controller, lw_controller_track_window(controller),
 				      LW_MOTION_REQUEST_REBASE,
-				      derived->switch_usteps[side] - triggers[side].at.pos_usteps);
+				      derived->switch_usteps[side] - trigger_usteps);
 		controller->motion.stop_at_rest = 0;
 		controller->state = LW_STATE_INDEX_REVERSAL;
 	} else if (direction * pos_usteps(controller) >
@@ -206,7 +212,9 @@ static void tick_span_check(struct lw_controller *controller,
 			start_parking(controller);
 		}
 	} else if (direction * (pos_usteps(controller) - derived->switch_usteps[side]) >
-		   derived->span_tolerance_usteps) {
+			   derived->span_tolerance_usteps ||
+		   lw_controller_moves_toward(lw_motion_direction(&controller->motion), !side)) {
+		/* Too far, or turned round already: the switch did not trigger where it should. */
 		controller->span_error_usteps =
 			pos_usteps(controller) - derived->switch_usteps[side];
 		lw_controller_fail(controller, LW_FAULT_INDEX_SPAN);
@@ -235,23 +243,31 @@ static bool jog_must_end(const struct lw_controller *controller)
 	       (!controller->indexed && controller->limit[side].active);
 }
 
-/** Hand the ramp down to the interrupt once the carriage is where it may come to rest. */
+/** Begin the ramp down once the carriage is where it may come to rest. */
 static void serve_halt(struct lw_controller *controller)
 {
 	const struct lw_law_window track = lw_controller_track_window(controller);
-	const struct lw_law *law = &controller->motion.law;
+	struct lw_motion *motion = &controller->motion;
 
-	if (!controller->halting || controller->halt_sent || law->u == 0 ||
-	    (controller->indexed && lw_law_region(&track, law->m) != 0)) {
+	if (!controller->halting || controller->halt_sent ||
+	    (controller->indexed && lw_law_region(&track, motion->law.m) != 0)) {
 		return;
 	}
 
-	struct lw_law_window window;
+	/* Without edges for a moment: the ramp down must fit the slope that it begins with. */
+	motion->source = LW_EDGE_SOURCE_NONE;
+	if (motion->law.u == 0) {
+		return; /* before its first edge, or in a dwell: at rest already */
+	}
 
-	lw_move_halt(law, &window, controller->derived->ka);
-	controller->motion.stop_at_rest = LW_MOTION_PLUS | LW_MOTION_MINUS;
-	lw_controller_request(controller, window, LW_MOTION_REQUEST_SWAP, 0);
+	struct lw_law_window *window = lw_controller_spare_window(controller);
+
+	lw_move_halt(&motion->law, window, controller->derived->ka);
+	motion->window = window;
+	motion->requests = 0;
+	motion->stop_at_rest = LW_MOTION_PLUS | LW_MOTION_MINUS;
 	controller->halt_sent = true;
+	motion->source = LW_EDGE_SOURCE_TIMER;
 }
 
 void lw_homing_tick(struct lw_controller *controller, const struct lw_controller_trigger *triggers)
@@ -277,6 +293,14 @@ void lw_homing_tick(struct lw_controller *controller, const struct lw_controller
 		} else {
 			controller->state = rest_state;
 		}
+		return;
+	}
+
+	/* Without an index the switches must tell the truth; only a jog does without them. */
+	if (!controller->indexed && controller->state != LW_STATE_JOGGING &&
+	    (controller->wiring[LW_PLUS] || controller->wiring[LW_MINUS])) {
+		lw_controller_fail(controller, controller->wiring[LW_PLUS] ? LW_FAULT_WIRING_PLUS
+									   : LW_FAULT_WIRING_MINUS);
 		return;
 	}
 

@@ -35,6 +35,23 @@ int32_t lw_params_q16_to_um(const struct lw_params *params, int64_t q16)
 				       (int64_t)params->microsteps_per_rev * LW_USTEP);
 }
 
+/** The largest number of whole micrometres that is at most so many microsteps. */
+static int32_t um_at_most(const struct lw_params *params, int32_t usteps)
+{
+	int32_t um = lw_params_q16_to_um(params, (int64_t)usteps * LW_USTEP) + 1;
+
+	while (lw_params_um_to_usteps(params, um) > usteps) {
+		um--;
+	}
+	return um;
+}
+
+/** The smallest number of whole micrometres that is at least so many microsteps. */
+static int32_t um_at_least(const struct lw_params *params, int32_t usteps)
+{
+	return -um_at_most(params, -usteps);
+}
+
 /** Used encoder edges per drum revolution, as the fraction num / den. */
 static void edges_per_drum_rev(const struct lw_params *params, int64_t *num, int64_t *den)
 {
@@ -65,6 +82,19 @@ static int64_t ideal_slope_q32(const struct lw_params *params)
 	return num / den * LW_USTEP + num % den * LW_USTEP / den;
 }
 
+/** The smallest pitch that asks for a slope of 1, rounded to nearest: ideal slope >= 1/2. */
+static int64_t smallest_pitch_um(const struct lw_params *params)
+{
+	int64_t edges_num;
+	int64_t edges_den;
+
+	edges_per_drum_rev(params, &edges_num, &edges_den);
+
+	const int64_t per_um = 2 * LW_USTEP * params->microsteps_per_rev * edges_den;
+
+	return (params->screw_lead_um * edges_num + per_um - 1) / per_um;
+}
+
 /** Overshoot past the entry of a reversal, Q16.16 (P5). 2^16 * 2^16 / 2 at the most. */
 static int64_t overshoot_q16(int64_t ka, int64_t nr)
 {
@@ -89,7 +119,7 @@ static int choose_slope(const struct lw_params *params, struct lw_derived *deriv
 	}
 	if (ideal < 1) {
 		return refuse(why, LW_REASON_SLOPE_TOO_SMALL, LW_ADDRESS_PITCH_UM, params->pitch_um,
-			      params->pitch_um);
+			      smallest_pitch_um(params));
 	}
 
 	const int64_t overshoot_usteps_q16 = (int64_t)params->overshoot_um *
@@ -146,56 +176,81 @@ static void reversals(const struct lw_params *params, int32_t trim_plus_um, int3
 	}
 }
 
+/** Blame a reversal point, in the register and the unit that it was given in. */
+static int refuse_reversal(const struct lw_params *params, struct lw_refusal *why,
+			   enum lw_reason reason, int side, int32_t limit_usteps, int32_t limit_um)
+{
+	if (params->expert_mode) {
+		return side == LW_PLUS
+			       ? refuse(why, reason, LW_ADDRESS_RAW_REVERSAL_PLUS_USTEPS,
+					params->raw_reversal_plus_usteps, limit_usteps)
+			       : refuse(why, reason, LW_ADDRESS_RAW_REVERSAL_MINUS_USTEPS,
+					params->raw_reversal_minus_usteps, limit_usteps);
+	}
+	return side == LW_PLUS ? refuse(why, reason, LW_ADDRESS_REVERSAL_PLUS_UM,
+					params->reversal_plus_um, limit_um)
+			       : refuse(why, reason, LW_ADDRESS_REVERSAL_MINUS_UM,
+					params->reversal_minus_um, limit_um);
+}
+
 /** The rules that bind reversal points, switches and flanges; also for a trim. */
 static int check_geometry(const struct lw_params *params, const struct lw_derived *derived,
 			  struct lw_refusal *why)
 {
-	const unsigned int plus_address = params->expert_mode ? LW_ADDRESS_RAW_REVERSAL_PLUS_USTEPS
-							      : LW_ADDRESS_REVERSAL_PLUS_UM;
-	const unsigned int minus_address = params->expert_mode
-						   ? LW_ADDRESS_RAW_REVERSAL_MINUS_USTEPS
-						   : LW_ADDRESS_REVERSAL_MINUS_UM;
 	const int32_t plus = derived->reversal_plus_usteps;
 	const int32_t minus = derived->reversal_minus_usteps;
-	const int32_t plus_um = lw_params_q16_to_um(params, (int64_t)plus * LW_USTEP);
-	const int32_t minus_um = lw_params_q16_to_um(params, (int64_t)minus * LW_USTEP);
 	/* P5: pos stays within [L- - dP - 1, L+ + dP + 1]. */
 	const int32_t reach = derived->overshoot_q16 / LW_USTEP + 2;
 
 	if (plus - minus < 2) {
-		return refuse(why, LW_REASON_REVERSALS_CROSSED, minus_address, minus_um, plus_um);
+		return refuse_reversal(params, why, LW_REASON_REVERSALS_CROSSED, LW_MINUS, plus - 2,
+				       um_at_most(params, plus - 2));
 	}
 	if (derived->switch_usteps[LW_PLUS] >= plus) {
 		return refuse(why, LW_REASON_SWITCH_PLUS_OUTSIDE, LW_ADDRESS_SWITCH_PLUS_UM,
-			      params->switch_plus_um, plus_um);
+			      params->switch_plus_um, lw_params_q16_to_um(params, (int64_t)plus * LW_USTEP));
 	}
 	if (derived->switch_usteps[LW_MINUS] <= minus) {
 		return refuse(why, LW_REASON_SWITCH_MINUS_OUTSIDE, LW_ADDRESS_SWITCH_MINUS_UM,
-			      params->switch_minus_um, minus_um);
+			      params->switch_minus_um,
+			      lw_params_q16_to_um(params, (int64_t)minus * LW_USTEP));
 	}
 
 	const int32_t flange_plus = lw_params_um_to_usteps(params, params->flange_plus_um);
 	const int32_t flange_minus = lw_params_um_to_usteps(params, params->flange_minus_um);
 
 	if (plus + reach > POSITION_MAX_USTEPS) {
-		return refuse(why, LW_REASON_POSITION_OVERFLOW, plus_address, plus + reach,
-			      POSITION_MAX_USTEPS);
+		return refuse_reversal(params, why, LW_REASON_POSITION_OVERFLOW, LW_PLUS,
+				       POSITION_MAX_USTEPS - reach,
+				       um_at_most(params, POSITION_MAX_USTEPS - reach));
 	}
 	if (minus - reach < -POSITION_MAX_USTEPS) {
-		return refuse(why, LW_REASON_POSITION_OVERFLOW, minus_address, minus - reach,
-			      -POSITION_MAX_USTEPS);
+		return refuse_reversal(params, why, LW_REASON_POSITION_OVERFLOW, LW_MINUS,
+				       reach - POSITION_MAX_USTEPS,
+				       um_at_least(params, reach - POSITION_MAX_USTEPS));
 	}
 	if (plus + reach > flange_plus) {
 		return refuse(why, LW_REASON_OVERSHOOT_BEYOND_FLANGE_PLUS,
 			      LW_ADDRESS_FLANGE_PLUS_UM, params->flange_plus_um,
-			      lw_params_q16_to_um(params, (int64_t)(plus + reach) * LW_USTEP));
+			      um_at_least(params, plus + reach));
 	}
 	if (minus - reach < flange_minus) {
 		return refuse(why, LW_REASON_OVERSHOOT_BEYOND_FLANGE_MINUS,
 			      LW_ADDRESS_FLANGE_MINUS_UM, params->flange_minus_um,
-			      lw_params_q16_to_um(params, (int64_t)(minus - reach) * LW_USTEP));
+			      um_at_most(params, minus - reach));
 	}
 	return 0;
+}
+
+/** The largest Nr whose overshoot fits into so many microsteps. */
+static int32_t largest_nr(int32_t ka, int32_t room_usteps)
+{
+	int32_t nr = 1;
+
+	while (overshoot_q16(ka, nr + 1) / LW_USTEP <= room_usteps) {
+		nr++;
+	}
+	return nr;
 }
 
 /** Rules for switches, ramps, parking and travel that a trim cannot break. */
@@ -213,15 +268,16 @@ static int check_motion(const struct lw_params *params, const struct lw_derived 
 	if (plus - minus <= clearance) {
 		return refuse(why, LW_REASON_SWITCHES_CROSSED, LW_ADDRESS_SWITCH_MINUS_UM,
 			      params->switch_minus_um,
-			      params->switch_plus_um -
-				      lw_params_q16_to_um(params, (int64_t)clearance * LW_USTEP));
+			      um_at_most(params, plus - clearance - 1));
 	}
 	if (plus - minus - clearance < 2 * ramp) {
-		return refuse(why, LW_REASON_RAMP_DOES_NOT_FIT,
-			      params->expert_mode ? LW_ADDRESS_RAW_NR : LW_ADDRESS_OVERSHOOT_UM,
-			      params->expert_mode ? params->raw_nr : (int64_t)params->overshoot_um,
-			      lw_params_q16_to_um(params, (int64_t)(plus - minus - clearance) / 2 *
-								  LW_USTEP));
+		const int32_t room = (plus - minus - clearance) / 2 - 2;
+
+		return params->expert_mode
+			       ? refuse(why, LW_REASON_RAMP_DOES_NOT_FIT, LW_ADDRESS_RAW_NR,
+					params->raw_nr, largest_nr(derived->ka, room))
+			       : refuse(why, LW_REASON_RAMP_DOES_NOT_FIT, LW_ADDRESS_OVERSHOOT_UM,
+					params->overshoot_um, um_at_most(params, room));
 	}
 	if (params->switch_plus_um + params->switch_tolerance_um > params->flange_plus_um) {
 		return refuse(why, LW_REASON_TOLERANCE_BEYOND_FLANGE,
@@ -240,8 +296,7 @@ static int check_motion(const struct lw_params *params, const struct lw_derived 
 		return refuse(
 			why, LW_REASON_PARK_OUTSIDE, LW_ADDRESS_PARK_POSITION_UM,
 			params->park_position_um,
-			lw_params_q16_to_um(params, (int64_t)(above ? plus - ramp : minus + ramp) *
-							    LW_USTEP));
+			above ? um_at_most(params, plus - ramp) : um_at_least(params, minus + ramp));
 	}
 	if (derived->centre_usteps <= minus || derived->centre_usteps >= plus) {
 		return refuse(why, LW_REASON_CENTRE_OUTSIDE, LW_ADDRESS_CENTRE_POSITION_UM,
@@ -258,7 +313,8 @@ static int check_motion(const struct lw_params *params, const struct lw_derived 
 	/* A seek starts at most one ramp before 0 and ends within the travel. */
 	if (derived->travel_usteps + 2 * ramp > POSITION_MAX_USTEPS) {
 		return refuse(why, LW_REASON_POSITION_OVERFLOW, LW_ADDRESS_TRAVEL_UM,
-			      derived->travel_usteps + 2 * ramp, POSITION_MAX_USTEPS);
+			      params->travel_um,
+			      um_at_most(params, POSITION_MAX_USTEPS - 2 * ramp));
 	}
 	if (params->overspeed_warning_edges_per_s > params->overspeed_trip_edges_per_s) {
 		return refuse(why, LW_REASON_OVERSPEED_LIMITS_CROSSED,
@@ -378,7 +434,7 @@ int lw_params_derive(const struct lw_params *params, struct lw_derived *derived,
 	return ret;
 }
 
-int lw_params_check_trim(const struct lw_params *params, const struct lw_derived *derived,
+static int check_trimmed(const struct lw_params *params, const struct lw_derived *derived,
 			 int32_t trim_plus_um, int32_t trim_minus_um, struct lw_refusal *why)
 {
 	struct lw_derived trimmed = *derived;
@@ -386,6 +442,37 @@ int lw_params_check_trim(const struct lw_params *params, const struct lw_derived
 	reversals(params, trim_plus_um, trim_minus_um, &trimmed.reversal_plus_usteps,
 		  &trimmed.reversal_minus_usteps);
 	return check_geometry(params, &trimmed, why);
+}
+
+int lw_params_check_trim(const struct lw_params *params, const struct lw_derived *derived,
+			 int32_t trim_plus_um, int32_t trim_minus_um, struct lw_refusal *why)
+{
+	struct lw_refusal ignored;
+
+	if (check_trimmed(params, derived, trim_plus_um, trim_minus_um, why) == 0) {
+		return 0;
+	}
+
+	/* The sides do not depend on each other: both switches lie between them. */
+	const bool plus = check_trimmed(params, derived, trim_plus_um, 0, &ignored) != 0;
+	const int32_t wanted_um = plus ? trim_plus_um : trim_minus_um;
+	int32_t good_um = 0;
+	int32_t bad_um = wanted_um;
+
+	while (bad_um - good_um > 1 || good_um - bad_um > 1) {
+		const int32_t between_um = (good_um + bad_um) / 2;
+
+		if (check_trimmed(params, derived, plus ? between_um : 0, plus ? 0 : between_um,
+				  &ignored)) {
+			bad_um = between_um;
+		} else {
+			good_um = between_um;
+		}
+	}
+	why->address = plus ? LW_ADDRESS_TRIM_PLUS_UM : LW_ADDRESS_TRIM_MINUS_UM;
+	why->value = wanted_um;
+	why->limit = good_um;
+	return -EINVAL;
 }
 
 struct lw_law_window lw_params_window(const struct lw_params *params,

@@ -45,15 +45,15 @@ void lw_tracking_start(struct lw_controller *controller)
 void lw_tracking_leave(struct lw_controller *controller)
 {
 	struct lw_motion *motion = &controller->motion;
-	const int32_t correction_usteps = motion->requests & LW_MOTION_REQUEST_CORRECTION
-						  ? motion->request_correction_usteps
-						  : 0;
+	const bool corrected = motion->requests & LW_MOTION_REQUEST_CORRECTION;
+	const int32_t correction_usteps = motion->request_correction_usteps;
 
 	lw_controller_cut(controller);
-	/* Out of the pattern a held correction can be made at once. */
-	motion->law.m += correction_usteps * LW_USTEP;
-	motion->law.u = 0;
-	motion->law.dwell_edges = 0;
+	controller->on_orbit = !corrected;
+	if (corrected) {
+		/* Out of the pattern a held correction can be made at once. */
+		motion->law.m += correction_usteps * LW_USTEP;
+	}
 }
 
 static void record(const struct lw_controller *controller, struct lw_los_record *record,
@@ -113,7 +113,9 @@ static void judge_reversal(struct lw_controller *controller, int side)
 			record(controller, &controller->los1[side], motion->law.m);
 		}
 	}
-	if (surely_inward(controller, side)) {
+	/* Before its correction the position says nothing about where a switch is. */
+	if (!(motion->requests & LW_MOTION_REQUEST_CORRECTION) &&
+	    surely_inward(controller, side)) {
 		controller->seen[side] = false;
 	}
 }

@@ -28,7 +28,9 @@ class Launch:
     polls: int = 0
     max_rope_speed_mm_per_s: int = 0
     min_rope_speed_mm_per_s: int = 0
-    permit_lost: bool = False
+    permit: str = "kept"
+    requests: int = 0
+    worst_latency_s: float = 0.0
 
     def gained(self, name: str) -> int:
         """How much a counter has changed."""
@@ -39,7 +41,7 @@ class Launch:
         return {
             "state": enum_label(State, self.end["state"]),
             "flags": flag_names(self.end["flags"]),
-            "launch_permit_kept": not self.permit_lost,
+            "launch_permit": self.permit,
             "net_edges": self.gained("net_edges"),
             "pattern_edges": self.gained("pattern_edges"),
             "step_pulses": self.gained("steps"),
@@ -51,6 +53,8 @@ class Launch:
             "simulated_s": round(self.plant_time_s, 3),
             "real_s": round(self.real_time_s, 3),
             "status_polls": self.polls,
+            "requests": self.requests,
+            "worst_latency_s": round(self.worst_latency_s, 4),
         }
 
 
@@ -91,7 +95,8 @@ def play(device: Device, profile: Profile, progress: Callable[[float], None]) ->
     plant_began_ms = device.value("bench_time_ms")
     duration_s = profile[-1][0] / 1000
     permit = 1 << Flag.LAUNCH_PERMIT
-    permitted = launch.begin["flags"] & permit
+    if not launch.begin["flags"] & permit:
+        launch.permit = "never given"
     try:
         write_plant(device, {"bench_command": BenchCommand.PROFILE_START})
         running = True
@@ -104,7 +109,8 @@ def play(device: Device, profile: Profile, progress: Callable[[float], None]) ->
             launch.polls += 1
             launch.max_rope_speed_mm_per_s = max(launch.max_rope_speed_mm_per_s, speed)
             launch.min_rope_speed_mm_per_s = min(launch.min_rope_speed_mm_per_s, speed)
-            launch.permit_lost |= bool(permitted and not live["flags"] & permit)
+            if launch.permit == "kept" and not live["flags"] & permit:
+                launch.permit = "lost"
             launch.plant_time_s = (bench["bench_time_ms"] - plant_began_ms) / 1000
             progress(min(1.0, launch.plant_time_s / duration_s))
     finally:
@@ -112,6 +118,8 @@ def play(device: Device, profile: Profile, progress: Callable[[float], None]) ->
     wait_for_rest(device)
     launch.end = read_live(device) | device.read_names(*counters)
     launch.real_time_s = time.monotonic() - began
+    launch.requests = device.requests
+    launch.worst_latency_s = device.worst_latency_s
     return launch
 
 

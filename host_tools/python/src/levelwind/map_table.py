@@ -50,7 +50,7 @@ class State(MapEnum):
         "Indexed and at rest. Follows the drum as soon as the mode is track and the drum is at rest",
     )
     TRACKING = 7, "tracking", "Following the drum"
-    CENTRING = 8, "centring", "Moving to the centre"
+    CENTRING = 8, "centring", "Moving to the centre, or back into the sweep before a hand-over"
     CENTRED = 9, "centred", "Held at the centre, the drum is not followed"
     JOGGING = 10, "jogging", "Moving by hand"
     OFF = 11, "off", "Stepper without current, position unknown"
@@ -184,7 +184,6 @@ class Reason(MapEnum):
     BUSY_MOVING = 11, "busy_moving", "Refused while the carriage moves by itself: wait or give stop"
     BUSY_SAVING = 12, "busy_saving", "Refused while parameters are being saved: try again"
     DRUM_MOVING = 13, "drum_moving", "The drum must be at rest for this"
-    IN_FAULT = 14, "in_fault", "Stopped by a fault: remove the cause, then clear_fault or index"
     CAUSE_PRESENT = 15, "cause_present", "The cause of the fault is still there"
     MODE_OFF = 16, "mode_off", "Refused in mode off: set the mode to track or centre first"
     OVERTRAVEL = 17, "overtravel", "Only motion away from the active overtravel switch is allowed"
@@ -411,7 +410,7 @@ class Flag(MapEnum):
     DEFAULTS_LOADED = (
         22,
         "defaults_loaded",
-        "No usable stored set was found at power-up: factory values are active",
+        "No usable stored set was found at power-up: factory values are active until a SAVE",
     )
     TRIM_PENDING = 23, "trim_pending", "A trim waits for the carriage to be in the sweep"
     CORRECTION_PENDING = (
@@ -761,7 +760,7 @@ POINTS: dict[str, Point] = {
             address=22,
             space="discrete",
             type="bit",
-            text="No usable stored set was found at power-up: factory values are active",
+            text="No usable stored set was found at power-up: factory values are active until a SAVE",
             block="discretes",
         ),
         Point(

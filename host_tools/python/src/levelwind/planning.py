@@ -45,6 +45,14 @@ class Plan:
         """Used encoder edges per drum revolution."""
         return self.derived.edges_per_1000_drum_revs / 1000
 
+    def sides_mm(self, place: str) -> tuple[float, float]:
+        """Where reversals (in force, also in expert mode), switches or flanges are."""
+        if place == "reversal":
+            plus, minus = self.derived.reversal_plus_usteps, self.derived.reversal_minus_usteps
+            return plus * self.um_per_ustep / 1000, minus * self.um_per_ustep / 1000
+        plus, minus = (self.parameters[f"{place}_{side}_um"] for side in ("plus", "minus"))
+        return plus / 1000, minus / 1000
+
     def changed(self) -> dict[str, int]:
         """Parameters that differ from the factory values."""
         return {p.name: v for p in PARAMETERS if (v := self.parameters[p.name]) != p.default}
@@ -163,12 +171,10 @@ def plot(result: Plan, path: Path) -> None:
     overshoot_mm = screw.overshoot * mm_per_m
     detail.set_title(f"reversal: {overshoot_mm:.3f} mm in {2 * screw.nr} edges")
     for axes in (whole, detail):
-        for side, color in (("plus", "tab:red"), ("minus", "tab:red")):
-            places = (("reversal", "--"), ("switch", ":"), ("flange", "-"))
-            for place, dashes in places:
-                mm = result.parameters[f"{place}_{side}_um"] / 1000
-                label = place if side == "plus" and axes is whole else None
-                axes.axhline(mm, color=color, linestyle=dashes, linewidth=0.9, label=label)
+        for place, dashes in (("reversal", "--"), ("switch", ":"), ("flange", "-")):
+            for mm in result.sides_mm(place):
+                label = place if axes is whole and mm == result.sides_mm(place)[0] else None
+                axes.axhline(mm, color="tab:red", linestyle=dashes, linewidth=0.9, label=label)
         axes.grid(alpha=0.3)
     center = orbit.entry_plus * mm_per_m
     detail.set_ylim(center - 1.5 * overshoot_mm, center + 1.5 * overshoot_mm)

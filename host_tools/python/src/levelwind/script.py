@@ -117,7 +117,10 @@ def _write_step(argument: object, kind: str, bench: bool) -> Step:
     shown = ", ".join(f"{name}={format_value(lookup(name), v)}" for name, v in values.items())
 
     def run(device: Device) -> str:
-        (write_plant if bench else Device.write)(device, values)
+        if bench:
+            write_plant(device, values)
+        else:
+            device.write(values)
         return ""
 
     return Step(f"{kind} {shown}", run)

@@ -42,7 +42,7 @@ class Simulator:
     """A simulator in the background; leaving the `with` block ends it."""
 
     def __init__(self, line: list[str]) -> None:
-        # A session of its own: Ctrl-C reaches only the tool, which ends the simulator in order.
+        # Away from the terminal: Ctrl-C reaches only the tool, which ends the simulator in order.
         self._process = subprocess.Popen(
             line, stdout=subprocess.PIPE, text=True, start_new_session=True
         )

@@ -1,5 +1,6 @@
 """YAML files that people write: `off` stays a word, and mistakes name the file and the line."""
 
+import re
 from pathlib import Path
 
 import yaml
@@ -11,10 +12,12 @@ class _Loader(yaml.SafeLoader):
     """Only true and false are booleans: YAML 1.1 would turn the mode `off` into false."""
 
 
+_BOOL = "tag:yaml.org,2002:bool"
 _Loader.yaml_implicit_resolvers = {
-    first: [(tag, pattern) for tag, pattern in resolvers if tag != "tag:yaml.org,2002:bool"]
+    first: [(tag, pattern) for tag, pattern in resolvers if tag != _BOOL]
     for first, resolvers in yaml.SafeLoader.yaml_implicit_resolvers.items()
 }
+_Loader.add_implicit_resolver(_BOOL, re.compile("^(?:true|false)$"), list("tf"))
 
 
 def load(path: Path) -> object:

@@ -43,7 +43,7 @@ enum lw_state {
 	LW_STATE_READY = 6,
 	/** Following the drum */
 	LW_STATE_TRACKING = 7,
-	/** Moving to the centre */
+	/** Moving to the centre, or back into the sweep before a hand-over */
 	LW_STATE_CENTRING = 8,
 	/** Held at the centre, the drum is not followed */
 	LW_STATE_CENTRED = 9,
@@ -178,8 +178,6 @@ enum lw_reason {
 	LW_REASON_BUSY_SAVING = 12,
 	/** The drum must be at rest for this */
 	LW_REASON_DRUM_MOVING = 13,
-	/** Stopped by a fault: remove the cause, then clear_fault or index */
-	LW_REASON_IN_FAULT = 14,
 	/** The cause of the fault is still there */
 	LW_REASON_CAUSE_PRESENT = 15,
 	/** Refused in mode off: set the mode to track or centre first */
@@ -395,7 +393,7 @@ enum lw_flag {
 	LW_FLAG_STAGED = 20,
 	/** Active parameters differ from the stored ones: SAVE to keep them */
 	LW_FLAG_DIRTY = 21,
-	/** No usable stored set was found at power-up: factory values are active */
+	/** No usable stored set was found at power-up: factory values are active until a SAVE */
 	LW_FLAG_DEFAULTS_LOADED = 22,
 	/** A trim waits for the carriage to be in the sweep */
 	LW_FLAG_TRIM_PENDING = 23,

@@ -73,7 +73,7 @@ int lw_params_derive(const struct lw_params *params, struct lw_derived *derived,
  * Check a live trim of the reversal points against the same rules.
  *
  * @retval 0 accepted
- * @retval -EINVAL refused; `why->limit` is the farthest trim in micrometres that would pass
+ * @retval -EINVAL refused; `why` as by lw_params_derive()
  */
 int lw_params_check_trim(const struct lw_params *params, const struct lw_derived *derived,
 			 int32_t trim_plus_um, int32_t trim_minus_um, struct lw_refusal *why);

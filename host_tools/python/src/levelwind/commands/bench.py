@@ -41,7 +41,9 @@ def launch(
     check_plant(device)
     points = profiles.read(profile, launches.read_gearing(device, motor_per_encoder))
     launches.upload(device, points)
-    with Progress(console=console, transient=True, disable=json_output) as progress:
+    with Progress(
+        console=console, transient=True, disable=json_output or not console.is_terminal
+    ) as progress:
         task = progress.add_task(profile.name, total=1.0)
         result = launches.play(device, points, lambda done: progress.update(task, completed=done))
     summary = result.summary() | {"profile_points": len(points)}
@@ -52,7 +54,7 @@ def launch(
             (name, ", ".join(value) if isinstance(value, list) else str(value))
             for name, value in summary.items()
         ]
-        print_table("", ("", "value"), rows)
+        print_table(("", "value"), rows)
 
 
 def demo(

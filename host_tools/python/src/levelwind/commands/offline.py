@@ -82,7 +82,7 @@ def plan(
     if json_output:
         print_json(result.document())
         return
-    print_table("", ("quantity", "value>", "unit", ""), result.rows())
+    print_table(("quantity", "value>", "unit", ""), result.rows())
     changed = result.changed()
     if changed:
         console.print("\nlevelwind set " + " ".join(f"{n}={v}" for n, v in changed.items()))
@@ -113,4 +113,4 @@ def replay(
         print_json(asdict(result))
     else:
         rows = [(name, str(value)) for name, value in asdict(result).items()]
-        print_table("", ("", "value>"), rows)
+        print_table(("", "value>"), rows)

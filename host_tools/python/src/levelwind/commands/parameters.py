@@ -22,14 +22,12 @@ from levelwind.points import (
 Names = Annotated[list[str] | None, typer.Argument(help="Names, or parts of names.")]
 
 
-def _matching(points: list[Point], names: list[str] | None) -> list[Point]:
+def _matching(names: list[str]) -> list[Point]:
     """Points of exactly these names, or whose names contain one of them."""
-    if not names:
-        return points
     chosen: dict[str, Point] = {}
     for name in names:
         exact = POINTS.get(name)
-        found = [exact] if exact else [p for p in points if name in p.name]
+        found = [exact] if exact else [p for p in POINTS.values() if name in p.name]
         chosen |= {p.name: p for p in found or [lookup(name)]}
     return list(chosen.values())
 
@@ -37,7 +35,7 @@ def _matching(points: list[Point], names: list[str] | None) -> list[Point]:
 @with_device
 def get(device: Device, names: Names = None, json_output: Json = False) -> None:
     """Show registers: parameters as staged, active and stored. Without names: all parameters."""
-    points = _matching(PARAMETERS, names)
+    points = _matching(names) if names else PARAMETERS
     parameters = [p for p in points if p.mirrors]
     others = [p for p in points if not p.mirrors]
     sets = read_sets(device, parameters)
@@ -68,10 +66,10 @@ def get(device: Device, names: Names = None, json_output: Json = False) -> None:
             )
             for p in parameters
         ]
-        print_table("", ("name", "staged>", "active>", "stored>", "unit", "limits"), rows)
+        print_table(("name", "staged>", "active>", "stored>", "unit", "limits"), rows)
     if others:
         rows = [(p.name, format_value(p, values[p.name]), p.unit, p.text) for p in others]
-        print_table("", ("name", "value>", "unit", "meaning"), rows)
+        print_table(("name", "value>", "unit", "meaning"), rows)
 
 
 @with_device
@@ -138,7 +136,7 @@ def diff(device: Device, json_output: Json = False) -> None:
             (p.name, *(format_value(p, sets[copy][p.name]) for copy in COPIES), p.unit)
             for p in differing
         ]
-        print_table("", ("name", "staged>", "active>", "stored>", "unit"), rows)
+        print_table(("name", "staged>", "active>", "stored>", "unit"), rows)
 
 
 def map_(
@@ -147,7 +145,7 @@ def map_(
     csv_output: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False,
 ) -> None:
     """Show the register table; with names only what matches."""
-    points = _matching(list(POINTS.values()), names)
+    points = _matching(names) if names else list(POINTS.values())
     if json_output:
         print_json([{**asdict(p), "enum": _enum(p), "bits": _bits(p)} for p in points])
     elif csv_output:
@@ -170,7 +168,7 @@ def map_(
         rows = [
             (p.space, str(p.address), _number(p), p.type, p.name, p.unit, p.text) for p in points
         ]
-        print_table("", ("space", "address>", "1-based>", "type", "name", "unit", "meaning"), rows)
+        print_table(("space", "address>", "1-based>", "type", "name", "unit", "meaning"), rows)
 
 
 def _number(point: Point) -> str:

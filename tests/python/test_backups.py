@@ -1,0 +1,47 @@
+"""Backup files: complete, checked, and readable by people."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+from levelwind import backups
+from levelwind.errors import ToolError
+from levelwind.map_table import MAP_VERSION
+from levelwind.output import json_value
+from levelwind.points import PARAMETERS
+
+DEFAULTS = {p.name: json_value(p, p.default) for p in PARAMETERS}
+
+
+def written(folder: Path, document: object) -> Path:
+    path = folder / "backup.yaml"
+    path.write_text(yaml.safe_dump(document), encoding="utf-8")
+    return path
+
+
+def document(**changes: object) -> dict[str, object]:
+    return {"levelwind_backup": MAP_VERSION, "parameters": DEFAULTS | changes}
+
+
+def test_a_backup_comes_back_with_names_for_enumerations(tmp_path: Path):
+    values = backups.read(written(tmp_path, document(index_switch="minus", pitch_um=11_000)))
+    assert values == {p.name: p.default for p in PARAMETERS} | {
+        "index_switch": 1,
+        "pitch_um": 11_000,
+    }
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ([], "is no backup"),
+        ({"levelwind_backup": 99, "parameters": DEFAULTS}, "has map version 99"),
+        ({"levelwind_backup": MAP_VERSION}, "parameters"),
+        (document(wat=1), "unknown wat"),
+        (document(pitch_um=1), "pitch_um=1 is outside its limits"),
+        ({"levelwind_backup": MAP_VERSION, "parameters": {}}, "missing baud_rate, missing"),
+    ],
+)
+def test_mistakes_are_named(tmp_path: Path, content: object, message: str):
+    with pytest.raises(ToolError, match=message):
+        backups.read(written(tmp_path, content))

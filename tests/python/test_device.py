@@ -1,0 +1,153 @@
+"""The connection: one request where possible, all or nothing, refusals in words."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from levelwind import device as device_module
+from levelwind.device import Device, Line
+from levelwind.errors import RefusedError, ToolError
+from levelwind.map_table import POINTS, Command, Reason, Result
+from levelwind.points import encode
+from pymodbus.exceptions import ModbusIOException
+
+OVERFLOW = 100_001  # a pitch that the fake refuses
+
+
+class FakeClient:
+    """Registers in a dictionary; refuses one value; runs commands with a result to choose."""
+
+    def __init__(self, port: str, **options: Any) -> None:
+        self.connected = True
+        self.registers: dict[tuple[str, int], int] = {}
+        self.writes: list[tuple[int, list[int]]] = []
+        self.silent_reads = 0
+        self.result = Result.DONE
+        self.reason = Reason.NONE
+
+    def connect(self) -> bool:
+        return True
+
+    def close(self) -> None:
+        self.connected = False
+
+    def put(self, name: str, value: int) -> None:
+        point = POINTS[name]
+        for i, word in enumerate(encode(point, value)):
+            self.registers[point.space, point.address + i] = word
+
+    def _read(self, space: str, address: int, count: int) -> Any:
+        if self.silent_reads:
+            self.silent_reads -= 1
+            raise ModbusIOException("no answer")
+        words = [self.registers.get((space, address + i), 0) for i in range(count)]
+        return SimpleNamespace(registers=words, isError=lambda: False)
+
+    def read_input_registers(self, address: int, count: int, device_id: int) -> Any:
+        return self._read("input", address, count)
+
+    def read_holding_registers(self, address: int, count: int, device_id: int) -> Any:
+        return self._read("holding", address, count)
+
+    read_coils = read_discrete_inputs = None
+
+    def write_registers(self, address: int, values: list[int], **_: Any) -> Any:
+        self.writes.append((address, values))
+        if address == POINTS["pitch_um"].address and values[:2] == encode(
+            POINTS["pitch_um"], OVERFLOW
+        ):
+            self.put("last_error_reason", Reason.OUT_OF_RANGE)
+            self.put("last_error_exception", 3)
+            self.put("last_error_address", address)
+            self.put("last_error_value", OVERFLOW)
+            self.put("last_error_limit", 100_000)
+            return SimpleNamespace(isError=lambda: True, exception_code=3)
+        for i, word in enumerate(values):
+            self.registers["holding", address + i] = word
+        if address == POINTS["command"].address:
+            sequence = POINTS["command_sequence"].address
+            self.registers["input", sequence] = self.registers.get(("input", sequence), 0) + 1
+            self.put("command_code", values[0])
+            self.put("command_result", self.result)
+            self.put("command_reason", self.reason)
+        return SimpleNamespace(isError=lambda: False)
+
+
+@pytest.fixture
+def device(monkeypatch: pytest.MonkeyPatch) -> Device:
+    monkeypatch.setattr(device_module, "ModbusSerialClient", FakeClient)
+    monkeypatch.setattr(device_module, "_check_port", lambda port: None)
+    return Device(Line("/dev/null"))
+
+
+def test_values_that_follow_each_other_go_out_in_one_request(device: Device):
+    device.write({"overshoot_um": 70_000, "pitch_um": 11_000, "slope_tolerance_ppm": 5})
+    assert device._client.writes == [(114, [0, 11_000, 1, 4464, 5])]
+
+
+def test_signed_values_come_back(device: Device):
+    device.write({"reversal_minus_um": -80_000, "trim_plus_um": -3})
+    assert device.read_names("reversal_minus_um", "trim_plus_um") == {
+        "reversal_minus_um": -80_000,
+        "trim_plus_um": -3,
+    }
+
+
+def test_a_refused_write_leaves_nothing_changed(device: Device):
+    device.write({"encoder_pulses_per_rev": 360, "screw_lead_um": 20_000})
+    with pytest.raises(RefusedError) as refusal:
+        device.write({"encoder_pulses_per_rev": 500, "screw_lead_um": 10_000, "pitch_um": OVERFLOW})
+    assert device.read_names("encoder_pulses_per_rev", "screw_lead_um") == {
+        "encoder_pulses_per_rev": 360,
+        "screw_lead_um": 20_000,
+    }
+    assert "The value is outside the limits" in str(refusal.value)
+    assert "pitch_um = 100001 um, limit 100000 um (holding register 114)" in str(refusal.value)
+
+
+def test_a_lost_read_is_repeated_and_silence_is_told(device: Device):
+    device._client.silent_reads = 2
+    assert device.value("state") == 0
+    device._client.silent_reads = 3
+    with pytest.raises(ToolError, match=r"(?s)No answer from .*unit 1.*wiring") as silence:
+        device.value("state")
+    assert len(str(silence.value).splitlines()) == 2
+
+
+def test_a_vanished_port_is_told(device: Device):
+    device._client.silent_reads = 1
+    device._client.connected = False
+    with pytest.raises(ToolError, match="gone away"):
+        device.value("state")
+
+
+def test_a_command_that_is_done_returns(device: Device):
+    device.command(Command.SAVE)
+    assert device._client.writes == [(0, [Command.SAVE])]
+
+
+def test_a_refused_command_says_why(device: Device):
+    device._client.result = Result.REFUSED
+    device._client.reason = Reason.REVERSALS_CROSSED
+    device._client.put("command_address", POINTS["reversal_minus_um"].address)
+    device._client.put("command_value", 90_000)
+    device._client.put("command_limit", 80_000)
+    with pytest.raises(RefusedError) as refusal:
+        device.command(Command.APPLY)
+    assert "apply refused: reversal_minus must lie" in str(refusal.value)
+    assert "reversal_minus_um = 90000 um, limit 80000 um" in str(refusal.value)
+
+
+def test_a_command_that_does_not_end_is_given_up(device: Device):
+    device._client.result = Result.IN_PROGRESS
+    looks = []
+    with pytest.raises(ToolError, match="index has not ended"):
+        device.command(Command.INDEX, lambda: looks.append(1), limit_s=0.02, poll_s=0.005)
+    assert looks
+
+
+@pytest.mark.parametrize("target", ["/dev/pts/7", "/dev/ttyUSB0"])
+def test_a_pseudo_terminal_is_opened_without_parity(tmp_path: Any, target: str):
+    link = tmp_path / "port"
+    link.symlink_to(target)
+    assert device_module._parity(Line(str(link))) == ("N" if "pts" in target else "E")

@@ -1,0 +1,104 @@
+"""Limit switches that bounce, and limit switches with broken wires."""
+
+import pytest
+from levelwind.map_table import Fault, LaunchInhibit, State, SwitchFault
+from world import World
+
+SIDES = ("plus", "minus")
+SWITCH_UM = 78_400
+NOTICED_S = 0.1
+BAD_AT_ONCE = (SwitchFault.NC_WIRE_BROKEN, SwitchFault.SHORTED)  # seen with the switch released
+
+
+def indexed(seed: int, bounce_ms: int) -> tuple[float, int]:
+    """Where an indexing leaves the carriage, and the span that it has found."""
+    world = World(seed)
+    world.write(bench_bounce_ms=bounce_ms)
+    world.index().run(0.3)
+    return world.truth.carriage_usteps - world.value("position_usteps"), world.value(
+        "span_error_um"
+    )
+
+
+@pytest.mark.parametrize("seed", range(1, 6))
+def test_bounce_does_not_move_the_position_of_the_first_closure(seed: int):
+    assert indexed(seed, bounce_ms=10) == pytest.approx(indexed(seed, bounce_ms=0), abs=0.2)
+
+
+@pytest.mark.parametrize("edges_per_s", [500, 5_000, 40_000])
+@pytest.mark.parametrize("drum", [1, -1], ids=["in", "out"])
+def test_bounce_gives_one_event_per_passage(edges_per_s: int, drum: int):
+    world = World()
+    world.write(bench_bounce_ms=10)
+    world.index()
+    if edges_per_s < 5000:  # a slow drum: bring the carriage near the switch first
+        world.drum(drum * 40_000)
+        world.run_until(lambda: abs(world.value("position_um")) < 70_000)
+        world.run_until(lambda: abs(world.value("position_um")) > 76_000)
+    world.drum(drum * edges_per_s, edges_per_s2=1e6)
+    orders, passages = [], {side: world.value(f"switch_{side}_triggers") for side in SIDES}
+    # Real passages outward, seen from behind the contacts.
+    outside = {"plus": False, "minus": False}
+    deadline_s = 10.0 if edges_per_s >= 5000 else 20.0
+    for _ in range(round(deadline_s / 0.001)):
+        world.run(0.001)
+        um = world.truth.carriage_um
+        for side, sign in (("plus", 1), ("minus", -1)):
+            if sign * um > SWITCH_UM + 400 and not outside[side]:
+                outside[side] = True
+                orders.append(side)
+            elif sign * um < SWITCH_UM - 1500:
+                outside[side] = False
+    assert orders
+    started_outside = orders[0] == "minus" and edges_per_s >= 5000  # parked at the minus flange
+    for side in SIDES:
+        real = orders.count(side) - (1 if started_outside and side == "minus" else 0)
+        assert world.value(f"switch_{side}_triggers") - passages[side] == real
+    assert "los" not in world.flags
+    assert world.permit
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("fault", BAD_AT_ONCE)
+def test_wiring_at_rest_is_noticed_and_index_names_it(side: str, fault: SwitchFault):
+    world = World()
+    world.write(**{f"bench_switch_{side}_fault": fault})
+    world.run_until(lambda: f"wiring_{side}" in world.flags, NOTICED_S)
+    assert world.index_faulted() == Fault[f"WIRING_{side.upper()}"]
+    assert not world.permit
+
+    # Repaired: indexing clears it.
+    world.write(**{f"bench_switch_{side}_fault": SwitchFault.NONE})
+    world.run(0.1)
+    assert world.index().permit
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_a_broken_no_wire_stops_indexing_where_the_switch_had_to_tell(side: str):
+    world = World()
+    world.write(**{f"bench_switch_{side}_fault": SwitchFault.NO_WIRE_BROKEN})
+    assert world.index_faulted() == Fault[f"WIRING_{side.upper()}"]
+    assert abs(world.truth.carriage_um) < SWITCH_UM + NOTICED_S * 41_700  # speed of indexing
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize(
+    "fault", [SwitchFault.NO_WIRE_BROKEN, SwitchFault.NC_WIRE_BROKEN, SwitchFault.SHORTED]
+)
+def test_wiring_in_a_launch_is_noticed_and_takes_the_permit(side: str, fault: SwitchFault):
+    world = World().index()
+    world.drum(10_000)
+    world.run_until(lambda: abs(world.value("position_um")) < 50_000, step_s=0.01)
+    assert world.permit
+    world.write(**{f"bench_switch_{side}_fault": fault})
+    if fault not in BAD_AT_ONCE:
+        sign = 1 if side == "plus" else -1
+        world.run_until(lambda: sign * world.truth.carriage_um > SWITCH_UM)
+    world.run_until(lambda: f"wiring_{side}" in world.flags, NOTICED_S)
+    assert not world.permit
+    assert world.value("launch_inhibit") >> LaunchInhibit.WIRING & 1
+    assert world.state == State.TRACKING  # a launch in progress goes on
+    # It stays, though the contacts agree again.
+    world.write(**{f"bench_switch_{side}_fault": SwitchFault.NONE})
+    world.run(3.0)
+    assert f"wiring_{side}" in world.flags

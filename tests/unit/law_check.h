@@ -1,0 +1,72 @@
+/**
+ * @file
+ * What the tests of the law share: windows, and the orbit of doc/control-law.md section 2.
+ */
+#ifndef LAW_CHECK_H
+#define LAW_CHECK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "lw/law.h"
+
+/** A window from the quantities of the design: L+ and L- in microsteps. */
+static inline struct lw_law_window law_window(int32_t ka, int32_t nr, int32_t plus_usteps,
+					      int32_t minus_usteps)
+{
+	return (struct lw_law_window){
+		.ka = ka,
+		.ks = ka * nr,
+		.sweep_begin = (minus_usteps + 1) * LW_USTEP,
+		.sweep_end = plus_usteps * LW_USTEP,
+	};
+}
+
+/** Way past its entry that a reversal has made after j edges. */
+static inline int64_t law_reversal_way(const struct lw_law_window *window, int64_t j)
+{
+	const int64_t nr = window->ks / window->ka;
+
+	return window->ka * j * (2 * nr - 1 - j) / 2;
+}
+
+/** Is the state one of those that the pattern can reach? The inductive invariant of the law. */
+static inline bool law_on_orbit(const struct lw_law *law, const struct lw_law_window *window)
+{
+	const int64_t m = law->m;
+	const int64_t end = window->sweep_end;
+	const int64_t begin = window->sweep_begin;
+	const int64_t ks = window->ks;
+	const bool at_plus = m >= end;
+
+	if (law->dwell_edges != 0 &&
+	    (law->u != 0 || law->dwell_edges > (at_plus ? window->dwell_plus_edges
+							: window->dwell_minus_edges))) {
+		return false;
+	}
+	if ((law->u == ks || law->u == -ks) && begin <= m && m < end) {
+		return true;
+	}
+	if (law->u > ks || law->u < -ks || (ks - law->u) % window->ka != 0) {
+		return false;
+	}
+
+	const int64_t plus = m - law_reversal_way(window, (ks - law->u) / window->ka);
+	const int64_t minus = m + law_reversal_way(window, (law->u + ks) / window->ka);
+
+	return (end <= plus && plus < end + ks) || (begin - ks <= minus && minus < begin);
+}
+
+static inline bool law_same(const struct lw_law *a, const struct lw_law *b)
+{
+	return a->m == b->m && a->u == b->u && a->dwell_edges == b->dwell_edges;
+}
+
+/** A small generator of numbers that look random, the same on every machine (Knuth's MMIX). */
+static inline uint32_t next_random(uint64_t *state)
+{
+	*state = *state * 6364136223846793005u + 1442695040888963407u;
+	return (uint32_t)(*state >> 32);
+}
+
+#endif /* LAW_CHECK_H */

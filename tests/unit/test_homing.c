@@ -1,0 +1,395 @@
+/* Every motion by simulated edges: indexing, backing off, parking, centring, jogging, halting. */
+#include <unity.h>
+
+#include "rig.h"
+
+void setUp(void)
+{
+	rig_prepare(0);
+}
+
+void tearDown(void)
+{
+}
+
+/** While the drum turns there is no hand-over: the carriage stays parked. */
+static void run_to_ready(void)
+{
+	rig.drum_edges_per_s = 1000;
+	rig_run_to(LW_STATE_READY);
+}
+
+/** Index from a place; the carriage is known to a microstep afterwards. */
+static void check_index(int32_t from_usteps, enum lw_side index_switch, enum lw_park_at park_at)
+{
+	rig_prepare(from_usteps);
+	rig.params.index_switch = index_switch;
+	rig.params.park_at = park_at;
+	rig.params.park_position_um = 12340;
+	rig_power_up();
+	rig_index();
+	run_to_ready();
+	TEST_ASSERT_TRUE(rig.controller->indexed);
+	TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
+	TEST_ASSERT_EQUAL_INT32(0, rig.controller->motion.law.u);
+	TEST_ASSERT_INT32_WITHIN(1, 0, rig.controller->span_error_usteps);
+	if (park_at == LW_PARK_AT_POSITION) {
+		TEST_ASSERT_INT32_WITHIN(1, 1234, rig.carriage_usteps);
+	} else {
+		TEST_ASSERT_INT32_WITHIN(2,
+					 (index_switch == LW_SIDE_PLUS ? -1 : 1) * (8000 + 247),
+					 rig.carriage_usteps);
+	}
+}
+
+static void test_index_from_anywhere_on_either_switch_to_either_place(void)
+{
+	/* The middle; before, on and beyond each switch; just released. */
+	static const int32_t places[] = {0,    5000, 7830,  7839,  7840,  7841,  8240,
+					 7795, 7700, -5000, -7839, -7840, -8240, -7795};
+
+	for (size_t place = 0; place < sizeof(places) / sizeof(places[0]); place++) {
+		for (int side = 0; side < 2; side++) {
+			for (int park = 0; park < 2; park++) {
+				check_index(places[place], (enum lw_side)side,
+					    (enum lw_park_at)park);
+			}
+		}
+	}
+}
+
+static void test_a_trigger_on_the_last_microstep_of_the_ramp(void)
+{
+	/* Ka 100, Nr 37: the ramp is little more than one microstep; its only step triggers. */
+	for (int side = 0; side < 2; side++) {
+		const int direction = lw_side_direction(side);
+
+		rig_prepare(direction * 7839);
+		rig.params.expert_mode = 1;
+		rig.params.raw_ka = 100;
+		rig.params.raw_nr = 37;
+		rig.params.index_switch = side;
+		rig.params.index_rate_edges_per_s = 1000;
+		rig_power_up();
+		rig_index();
+		while (rig.carriage_usteps == direction * 7839) {
+			rig_tick();
+		}
+		rig_ticks(30);
+		rig.params.index_rate_edges_per_s = 50000;
+		rig_run_to(LW_STATE_SPAN_CHECK);
+		TEST_ASSERT_EQUAL_INT32(-direction * rig.derived.ks,
+					rig.controller->motion.law.u);
+	}
+}
+
+static void test_states_of_an_index_in_order(void)
+{
+	static const enum lw_state states[] = {LW_STATE_BACKING_OFF, LW_STATE_SEEKING,
+					       LW_STATE_INDEX_REVERSAL, LW_STATE_SPAN_CHECK,
+					       LW_STATE_PARKING, LW_STATE_READY,
+					       LW_STATE_TRACKING};
+
+	rig_prepare(7900);
+	rig_power_up();
+	rig_index();
+	for (size_t i = 0; i < sizeof(states) / sizeof(states[0]); i++) {
+		rig.drum_edges_per_s = states[i] == LW_STATE_TRACKING ? 0 : 1000;
+		rig_run_to(states[i]);
+		TEST_ASSERT_EQUAL(i < 5, lw_controller_moving(rig.controller));
+		TEST_ASSERT_EQUAL_UINT32(i < 5 ? 10000u : 0u, lw_controller_timer_rate_edges_per_s(
+								      rig.controller));
+	}
+}
+
+static void test_index_clears_los_flags_and_the_fault(void)
+{
+	rig_power_up();
+	rig.controller->los1[LW_MINUS].set = true;
+	rig.controller->los2[LW_PLUS].set = true;
+	rig.controller->fault = LW_FAULT_INDEX_SPAN;
+	rig_index();
+	TEST_ASSERT_EQUAL_INT(LW_FAULT_NONE, rig.controller->fault);
+	rig_run_to(LW_STATE_PARKING);
+	TEST_ASSERT_TRUE(rig.controller->los1[LW_MINUS].set);
+	run_to_ready();
+	TEST_ASSERT_FALSE(rig.controller->los1[LW_MINUS].set);
+	TEST_ASSERT_FALSE(rig.controller->los2[LW_PLUS].set);
+}
+
+static void test_no_switch_within_the_travel(void)
+{
+	rig.switches[LW_PLUS] = RIG_SWITCH_NEVER;
+	rig_power_up();
+	rig_index();
+	rig_run_to_fault(LW_FAULT_INDEX_NO_SWITCH);
+	/* Not farther than the mechanism can be long. */
+	TEST_ASSERT_INT32_WITHIN(300, 18000 + 250, rig.carriage_usteps);
+}
+
+static void test_no_switch_because_nothing_moves(void)
+{
+	rig_prepare(0);
+	rig.params.index_switch = LW_SIDE_MINUS;
+	rig_power_up();
+	rig.stalled = true;
+	rig_index();
+	rig_run_to_fault(LW_FAULT_INDEX_NO_SWITCH);
+}
+
+static void test_wrong_switch_first(void)
+{
+	rig_power_up();
+	rig_index();
+	rig_run_to(LW_STATE_SEEKING);
+	rig_ticks(500);
+	rig_set_switch(LW_MINUS, RIG_SWITCH_ALWAYS);
+	rig_run_to_fault(LW_FAULT_INDEX_WRONG_SWITCH);
+}
+
+static void test_wrong_switch_while_backing_off(void)
+{
+	rig_prepare(7900);
+	rig_power_up();
+	rig_index();
+	rig_ticks(30);
+	rig_set_switch(LW_PLUS, RIG_SWITCH_NEVER);
+	rig_set_switch(LW_MINUS, RIG_SWITCH_ALWAYS);
+	rig_run_to_fault(LW_FAULT_INDEX_WRONG_SWITCH);
+}
+
+static void test_both_switches_active(void)
+{
+	rig.switches[LW_PLUS] = RIG_SWITCH_ALWAYS;
+	rig.switches[LW_MINUS] = RIG_SWITCH_ALWAYS;
+	rig_power_up();
+	rig_index();
+	TEST_ASSERT_EQUAL_INT(LW_FAULT_BOTH_SWITCHES_ACTIVE, rig.controller->fault);
+	TEST_ASSERT_EQUAL_UINT32(0, rig.controller->motion.steps);
+
+	rig_prepare(7900);
+	rig_power_up();
+	rig_index();
+	rig_ticks(30);
+	rig_set_switch(LW_MINUS, RIG_SWITCH_ALWAYS);
+	rig_run_to_fault(LW_FAULT_BOTH_SWITCHES_ACTIVE);
+}
+
+static void test_wiring_at_the_start(void)
+{
+	for (int side = 0; side < 2; side++) {
+		rig_prepare(0);
+		rig.switches[side] = RIG_SWITCH_SHORTED;
+		rig_power_up();
+		rig_index();
+		TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state);
+		TEST_ASSERT_EQUAL_INT(side == LW_PLUS ? LW_FAULT_WIRING_PLUS
+						      : LW_FAULT_WIRING_MINUS,
+				      rig.controller->fault);
+		TEST_ASSERT_EQUAL_UINT32(0, rig.controller->motion.steps);
+	}
+}
+
+static void test_wiring_while_indexing(void)
+{
+	/* The NO wire is broken: it shows only when the carriage has come to the switch. */
+	for (int side = 0; side < 2; side++) {
+		rig_prepare(0);
+		rig.switches[side] = RIG_SWITCH_NO_OPEN;
+		rig_power_up();
+		rig_index();
+		rig_run_to_fault(side == LW_PLUS ? LW_FAULT_WIRING_PLUS : LW_FAULT_WIRING_MINUS);
+		TEST_ASSERT_TRUE(lw_side_direction(side) * rig.carriage_usteps < 8250);
+	}
+}
+
+static void test_the_switch_does_not_release(void)
+{
+	rig_prepare(7000);
+	rig.switches[LW_PLUS] = RIG_SWITCH_ALWAYS;
+	rig_power_up();
+	rig_index();
+	TEST_ASSERT_EQUAL_INT(LW_STATE_BACKING_OFF, rig.controller->state);
+	rig_run_to_fault(LW_FAULT_BACK_OFF_NO_RELEASE);
+	TEST_ASSERT_INT32_WITHIN(10, 7000 - 9000, rig.carriage_usteps);
+}
+
+/** The other switch is found `shift` microsteps from where it was calibrated. */
+static void check_span(enum lw_side index_switch, int32_t shift)
+{
+	const int other = index_switch == LW_SIDE_PLUS ? LW_MINUS : LW_PLUS;
+
+	rig_prepare(0);
+	rig.params.index_switch = index_switch;
+	rig.params.span_tolerance_um = 1000;
+	rig.switch_at_usteps[other] += shift;
+	rig_power_up();
+	rig_index();
+	if (shift < -100 || shift > 100) {
+		rig_run_to_fault(LW_FAULT_INDEX_SPAN);
+	} else {
+		run_to_ready();
+		TEST_ASSERT_INT32_WITHIN(1, shift, rig.controller->span_error_usteps);
+	}
+}
+
+static void test_span_of_the_switches(void)
+{
+	static const int32_t shifts[] = {0, 99, -99, 103, -103, 200, -200};
+
+	for (int side = 0; side < 2; side++) {
+		for (size_t i = 0; i < sizeof(shifts) / sizeof(shifts[0]); i++) {
+			check_span((enum lw_side)side, shifts[i]);
+		}
+		rig_prepare(0);
+		rig.params.index_switch = side;
+		rig.switches[!side] = RIG_SWITCH_NEVER;
+		rig_power_up();
+		rig_index();
+		rig_run_to_fault(LW_FAULT_INDEX_SPAN);
+	}
+}
+
+static void test_span_trigger_just_beyond_the_tolerance_in_one_tick(void)
+{
+	/* Early: triggered, and judged by its place. */
+	rig.switch_at_usteps[LW_MINUS] = -7840 + 150;
+	rig_power_up();
+	rig_index();
+	rig_run_to_fault(LW_FAULT_INDEX_SPAN);
+	TEST_ASSERT_INT32_WITHIN(1, 150, rig.controller->span_error_usteps);
+}
+
+static void test_back_off_from_an_overtravel_switch(void)
+{
+	rig_prepare(8240);
+	rig_power_up();
+	lw_controller_overtravel(rig.controller, LW_PLUS, true);
+	rig_ticks(2);
+	TEST_ASSERT_EQUAL_INT(LW_FAULT_OVERTRAVEL_PLUS, rig.controller->fault);
+	rig_index();
+	TEST_ASSERT_EQUAL_INT(LW_STATE_BACKING_OFF, rig.controller->state);
+	TEST_ASSERT_TRUE(lw_controller_stepper_enabled(rig.controller));
+	while (rig.carriage_usteps > 8200) {
+		rig_tick();
+	}
+	lw_controller_overtravel(rig.controller, LW_PLUS, false);
+	run_to_ready();
+}
+
+static void test_stop_in_every_state_of_an_index(void)
+{
+	for (int state = LW_STATE_BACKING_OFF; state <= LW_STATE_PARKING; state++) {
+		rig_prepare(7900);
+		rig_power_up();
+		rig_index();
+		rig_run_to((enum lw_state)state);
+		rig_ticks(100);
+		lw_controller_stop(rig.controller);
+		rig_run_to(LW_STATE_UNINDEXED);
+		TEST_ASSERT_FALSE(rig.controller->indexed);
+		TEST_ASSERT_EQUAL_INT32(0, rig.controller->motion.law.u);
+
+		const uint32_t steps = rig.controller->motion.steps;
+
+		rig_ticks(1000);
+		TEST_ASSERT_EQUAL_UINT32(steps, rig.controller->motion.steps);
+		/* And again from here. */
+		rig_index();
+		run_to_ready();
+		rig_rest();
+	}
+}
+
+static void test_stop_at_any_moment_of_an_index_comes_to_rest(void)
+{
+	rig_prepare(7900);
+	rig_power_up();
+	for (int ticks = 0; ticks < 7000; ticks += 61) {
+		rig_index();
+		for (int i = 0; i < ticks && rig.controller->state != LW_STATE_READY; i++) {
+			rig_tick();
+		}
+		lw_controller_stop(rig.controller);
+		rig_ticks(400);
+		TEST_ASSERT_FALSE(lw_controller_moving(rig.controller));
+		TEST_ASSERT_EQUAL_UINT8(LW_EDGE_SOURCE_NONE, rig.controller->motion.source);
+		rig_place(7900);
+		rig_ticks(30);
+	}
+}
+
+static void test_stop_in_a_dwell_stops_at_once(void)
+{
+	rig.params.dwell_plus_millirev = 10000;
+	rig_power_up();
+	rig_index();
+	rig_run_to(LW_STATE_INDEX_REVERSAL);
+	while (rig.controller->motion.law.dwell_edges < 100) {
+		rig_tick();
+	}
+
+	const int32_t place = rig.carriage_usteps;
+
+	lw_controller_stop(rig.controller);
+	rig_ticks(3);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_UNINDEXED, rig.controller->state);
+	TEST_ASSERT_EQUAL_INT32(place, rig.carriage_usteps);
+}
+
+static void test_index_with_a_single_contact(void)
+{
+	for (int contacts = LW_SWITCH_CONTACTS_SINGLE_NO; contacts <= LW_SWITCH_CONTACTS_SINGLE_NC;
+	     contacts++) {
+		rig_prepare(0);
+		rig.params.switch_contacts = contacts;
+		rig_power_up();
+		rig_index();
+		run_to_ready();
+		TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
+	}
+}
+
+static void test_index_with_a_dwell_parks_at_the_flange_before_it(void)
+{
+	rig.params.dwell_minus_millirev = 1000;
+	rig_power_up();
+	rig_index();
+	run_to_ready();
+	TEST_ASSERT_EQUAL_UINT32(0, rig.controller->motion.law.dwell_edges);
+
+	const int32_t m = rig.controller->motion.law.m;
+
+	rig_rest();
+	TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
+	rig_turn(2880);
+	TEST_ASSERT_EQUAL_INT32(m, rig.controller->motion.law.m);
+	rig_turn(1);
+	TEST_ASSERT_EQUAL_INT32(m + 23, rig.controller->motion.law.m);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_index_from_anywhere_on_either_switch_to_either_place);
+	RUN_TEST(test_a_trigger_on_the_last_microstep_of_the_ramp);
+	RUN_TEST(test_states_of_an_index_in_order);
+	RUN_TEST(test_index_clears_los_flags_and_the_fault);
+	RUN_TEST(test_no_switch_within_the_travel);
+	RUN_TEST(test_no_switch_because_nothing_moves);
+	RUN_TEST(test_wrong_switch_first);
+	RUN_TEST(test_wrong_switch_while_backing_off);
+	RUN_TEST(test_both_switches_active);
+	RUN_TEST(test_wiring_at_the_start);
+	RUN_TEST(test_wiring_while_indexing);
+	RUN_TEST(test_the_switch_does_not_release);
+	RUN_TEST(test_span_of_the_switches);
+	RUN_TEST(test_span_trigger_just_beyond_the_tolerance_in_one_tick);
+	RUN_TEST(test_back_off_from_an_overtravel_switch);
+	RUN_TEST(test_stop_in_every_state_of_an_index);
+	RUN_TEST(test_stop_at_any_moment_of_an_index_comes_to_rest);
+	RUN_TEST(test_stop_in_a_dwell_stops_at_once);
+	RUN_TEST(test_index_with_a_single_contact);
+	RUN_TEST(test_index_with_a_dwell_parks_at_the_flange_before_it);
+	return UNITY_END();
+}

@@ -1,0 +1,348 @@
+/* The control law: properties P1 to P8 of doc/control-law.md, and the dwell. */
+#include <unity.h>
+
+#include "law_check.h"
+
+/** Sets of Ka, Nr, L+ and L-: the example, the extremes of the slope, the smallest sweep. */
+static const struct {
+	int32_t ka;
+	int32_t nr;
+	int32_t plus_usteps;
+	int32_t minus_usteps;
+} sets[] = {
+	{23, 1187, 8000, -8000},  {65535, 1, 50, -50},     {1, 26000, 5000, -5000},
+	{1, 60000, 2000, -2000},  {1, 1, 1, -1},           {27301, 1, 1, -1},
+	{65535, 1, 1, -1},        {23, 1187, 1, -1},       {300, 200, 30000, 29000},
+	{17, 3855, -9000, -9500}, {4369, 15, 7800, -8123},
+};
+
+#define SET_COUNT (sizeof(sets) / sizeof(sets[0]))
+
+static struct lw_law_window window;
+static struct lw_law law;
+
+static void use_set(size_t i)
+{
+	window = law_window(sets[i].ka, sets[i].nr, sets[i].plus_usteps, sets[i].minus_usteps);
+	law = (struct lw_law){.m = window.sweep_begin + (window.sweep_end - window.sweep_begin) / 2,
+			      .u = window.ks};
+}
+
+/** One edge, with the properties that hold on every edge. */
+static void edge(int dd)
+{
+	const int32_t before_usteps = lw_law_pos_usteps(law.m);
+	const int step = lw_law_edge(&law, &window, dd);
+
+	TEST_ASSERT_EQUAL_INT(lw_law_pos_usteps(law.m) - before_usteps, step);
+	TEST_ASSERT_TRUE_MESSAGE(-1 <= step && step <= 1, "P6: at most one step per edge");
+	TEST_ASSERT_TRUE_MESSAGE(law_on_orbit(&law, &window), "the state left the orbit");
+}
+
+/** Forward edges until the state is back; so every state that the pattern has is passed. */
+static uint32_t period_edges(void)
+{
+	const struct lw_law start = law;
+	uint32_t edges = 0;
+
+	do {
+		edge(1);
+		edges++;
+		TEST_ASSERT_TRUE(edges < 4000000);
+	} while (!law_same(&law, &start));
+	return edges;
+}
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+}
+
+/** The paper's block diagram as it is drawn, for any dd; comparators, multiplexers, integrators. */
+struct diagram {
+	int64_t m;
+	int64_t velocity;
+	int dd_before;
+};
+
+static void diagram_edge(struct diagram *diagram, int dd, int32_t ka, int32_t ks, int32_t plus,
+			 int32_t minus)
+{
+	const int64_t pos = diagram->m >> 16;
+	const bool in_plus = pos >= plus;
+	const bool in_minus = pos <= minus;
+	const int upper_mux = in_plus ? -1 : 1;
+	const int differentiator = dd - diagram->dd_before;
+	const int64_t increment =
+		in_plus || in_minus ? (int64_t)dd * upper_mux * ka : (int64_t)differentiator * ks;
+
+	diagram->velocity += increment;
+	diagram->m += diagram->velocity;
+	diagram->dd_before = dd;
+}
+
+static void test_p1_forward_it_equals_the_block_diagram(void)
+{
+	for (size_t i = 0; i < SET_COUNT; i++) {
+		use_set(i);
+
+		struct diagram diagram = {.m = law.m, .velocity = law.u, .dd_before = 1};
+
+		for (uint32_t edges = 4 * period_edges(); edges > 0; edges--) {
+			lw_law_edge(&law, &window, 1);
+			diagram_edge(&diagram, 1, sets[i].ka, window.ks, sets[i].plus_usteps,
+				     sets[i].minus_usteps);
+			TEST_ASSERT_EQUAL_INT64(diagram.m, law.m);
+			TEST_ASSERT_EQUAL_INT64(diagram.velocity, law.u);
+		}
+	}
+}
+
+static void assert_undone(void)
+{
+	const struct lw_law state = law;
+	struct lw_law copy = law;
+
+	lw_law_edge(&copy, &window, 1);
+	lw_law_edge(&copy, &window, -1);
+	TEST_ASSERT_TRUE_MESSAGE(law_same(&state, &copy), "forward, backward");
+	lw_law_edge(&copy, &window, -1);
+	lw_law_edge(&copy, &window, 1);
+	TEST_ASSERT_TRUE_MESSAGE(law_same(&state, &copy), "backward, forward");
+}
+
+static void test_p2_every_state_of_the_pattern_is_undone(void)
+{
+	for (size_t i = 0; i < SET_COUNT; i++) {
+		for (uint32_t dwell_edges = 0; dwell_edges < 3; dwell_edges++) {
+			use_set(i);
+			window.dwell_plus_edges = dwell_edges;
+			window.dwell_minus_edges = 2 * dwell_edges;
+			for (uint32_t edges = period_edges(); edges > 0; edges--) {
+				assert_undone();
+				edge(1);
+			}
+		}
+	}
+}
+
+static void test_p2_states_off_the_pattern_are_undone_too(void)
+{
+	for (size_t i = 0; i < SET_COUNT; i++) {
+		use_set(i);
+
+		const int32_t places[] = {window.sweep_begin, window.sweep_end, 0, law.m};
+
+		for (size_t place = 0; place < 4; place++) {
+			for (int32_t offset = -70000; offset <= 70000; offset += 997) {
+				for (int32_t u = -window.ks; u <= window.ks;
+				     u += window.ks / 7 + 1) {
+					law = (struct lw_law){places[place] + offset, u, 0};
+					assert_undone();
+				}
+			}
+		}
+	}
+}
+
+static void test_p3_the_sweep_slope_is_exactly_ks_for_ever(void)
+{
+	for (size_t i = 0; i < SET_COUNT; i++) {
+		use_set(i);
+		for (uint32_t edges = 4 * period_edges(); edges > 0; edges--) {
+			const bool was_in_sweep = lw_law_region(&window, law.m) == 0;
+
+			edge(1);
+			TEST_ASSERT_TRUE(-window.ks <= law.u && law.u <= window.ks);
+			if (was_in_sweep) {
+				TEST_ASSERT_EQUAL_INT32(window.ks, law.u < 0 ? -law.u : law.u);
+			}
+		}
+	}
+}
+
+/** From the sweep into the reversal toward `direction`, through it and out; P4 and P5. */
+static void check_reversal(int direction, int32_t nr, uint32_t dwell_edges)
+{
+	uint32_t edges = 0;
+	int64_t farthest = 0;
+
+	while (lw_law_region(&window, law.m) != -direction) {
+		edge(1);
+	}
+
+	const int32_t entry = law.m;
+
+	TEST_ASSERT_EQUAL_INT32(direction * window.ks, law.u);
+	do {
+		edge(1);
+		edges++;
+		if (direction * ((int64_t)law.m - entry) > farthest) {
+			farthest = direction * ((int64_t)law.m - entry);
+		}
+	} while (law.u != -direction * window.ks);
+
+	TEST_ASSERT_EQUAL_UINT32(2 * (uint32_t)nr + dwell_edges, edges);
+	TEST_ASSERT_EQUAL_INT64((int64_t)window.ks * (nr - 1) / 2, farthest);
+	TEST_ASSERT_EQUAL_INT32(entry - direction * window.ks, law.m);
+	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&window, law.m));
+}
+
+static void test_p4_p5_reversals_at_both_sides(void)
+{
+	for (size_t i = 0; i < SET_COUNT; i++) {
+		use_set(i);
+
+		const int32_t reach = (int32_t)((int64_t)window.ks * (sets[i].nr - 1) / 2 >> 16);
+
+		for (int period = 0; period < 4; period++) {
+			check_reversal(1, sets[i].nr, 0);
+			check_reversal(-1, sets[i].nr, 0);
+		}
+		for (uint32_t edges = period_edges(); edges > 0; edges--) {
+			edge(1);
+			TEST_ASSERT_TRUE(lw_law_pos_usteps(law.m) <=
+					 sets[i].plus_usteps + reach + 1);
+			TEST_ASSERT_TRUE(lw_law_pos_usteps(law.m) >=
+					 sets[i].minus_usteps - reach - 1);
+		}
+	}
+}
+
+static void test_p7_the_pattern_has_one_period(void)
+{
+	for (size_t i = 0; i < SET_COUNT; i++) {
+		use_set(i);
+
+		/* The state comes back bit for bit, so what holds for these holds for all. */
+		const uint32_t edges = period_edges();
+
+		for (int period = 0; period < 10; period++) {
+			TEST_ASSERT_EQUAL_UINT32(edges, period_edges());
+		}
+	}
+}
+
+static void test_random_directions_stay_on_the_orbit_and_can_be_retraced(void)
+{
+	uint64_t seed = 1;
+
+	for (size_t i = 0; i < SET_COUNT; i++) {
+		use_set(i);
+		window.dwell_plus_edges = (uint32_t)i % 3;
+		window.dwell_minus_edges = (uint32_t)i % 4;
+
+		const struct lw_law start = law;
+		struct lw_law straight = law;
+		int64_t net_edges = 0;
+
+		/* Runs of some length: mere dither would not come far. */
+		for (int run = 0; run < 200; run++) {
+			const int dd = next_random(&seed) % 2 ? 1 : -1;
+
+			for (uint32_t edges = next_random(&seed) % 5000; edges > 0; edges--) {
+				edge(dd);
+				net_edges += dd;
+			}
+		}
+		for (int64_t edges = net_edges; edges != 0; edges += edges > 0 ? -1 : 1) {
+			lw_law_edge(&straight, &window, net_edges > 0 ? 1 : -1);
+		}
+		TEST_ASSERT_TRUE(law_same(&straight, &law));
+		for (; net_edges != 0; net_edges += net_edges > 0 ? -1 : 1) {
+			edge(net_edges > 0 ? -1 : 1);
+		}
+		TEST_ASSERT_TRUE(law_same(&start, &law));
+	}
+}
+
+static void test_p8_the_steepest_and_longest_reversal_fits(void)
+{
+	/* Ka 1, Nr 65535: its overshoot is 32766 microsteps, all that a position has. */
+	window = law_window(1, 65535, 0, -20000);
+	law = (struct lw_law){.m = 65534, .u = 65535};
+	for (int i = 0; i < 2 * 65535; i++) {
+		edge(1);
+	}
+	TEST_ASSERT_EQUAL_INT32(-1, law.m);
+	TEST_ASSERT_EQUAL_INT32(-65535, law.u);
+	for (int i = 0; i < 2 * 65535; i++) {
+		edge(-1);
+	}
+	TEST_ASSERT_EQUAL_INT32(65534, law.m);
+}
+
+static void test_dwell_is_exact_to_one_edge_at_both_sides(void)
+{
+	for (size_t i = 0; i < SET_COUNT; i++) {
+		use_set(i);
+
+		const uint32_t edges = period_edges();
+
+		window.dwell_plus_edges = 3;
+		window.dwell_minus_edges = 2880;
+		TEST_ASSERT_EQUAL_UINT32(edges + 3 + 2880, period_edges());
+		check_reversal(1, sets[i].nr, 3);
+		check_reversal(-1, sets[i].nr, 2880);
+	}
+}
+
+/** At the far point and through it in direction dd: edges at rest, then the first that moves. */
+static void check_rest(int dd, uint32_t dwell_edges)
+{
+	const int32_t m = law.m;
+
+	for (uint32_t i = 0; i < dwell_edges; i++) {
+		edge(dd);
+		TEST_ASSERT_EQUAL_INT32(m, law.m);
+		TEST_ASSERT_EQUAL_INT32(0, law.u);
+	}
+	edge(dd);
+	TEST_ASSERT_NOT_EQUAL(0, law.u);
+}
+
+static void test_dwell_rests_as_long_backward_as_forward(void)
+{
+	for (int side = -1; side <= 1; side += 2) {
+		const uint32_t dwell_edges = side > 0 ? 5 : 7;
+
+		use_set(0);
+		window.dwell_plus_edges = 5;
+		window.dwell_minus_edges = 7;
+		while (!(law.u == 0 && lw_law_region(&window, law.m) == -side)) {
+			edge(1);
+		}
+		check_rest(1, dwell_edges);
+		edge(-1);
+		TEST_ASSERT_EQUAL_INT32(0, law.u);
+		check_rest(-1, dwell_edges);
+		edge(1);
+		TEST_ASSERT_EQUAL_INT32(0, law.u);
+
+		/* Turning round within the dwell: what was rested is taken back. */
+		edge(1);
+		edge(1);
+		edge(-1);
+		edge(-1);
+		check_rest(-1, 0);
+	}
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_p1_forward_it_equals_the_block_diagram);
+	RUN_TEST(test_p2_every_state_of_the_pattern_is_undone);
+	RUN_TEST(test_p2_states_off_the_pattern_are_undone_too);
+	RUN_TEST(test_p3_the_sweep_slope_is_exactly_ks_for_ever);
+	RUN_TEST(test_p4_p5_reversals_at_both_sides);
+	RUN_TEST(test_p7_the_pattern_has_one_period);
+	RUN_TEST(test_random_directions_stay_on_the_orbit_and_can_be_retraced);
+	RUN_TEST(test_p8_the_steepest_and_longest_reversal_fits);
+	RUN_TEST(test_dwell_is_exact_to_one_edge_at_both_sides);
+	RUN_TEST(test_dwell_rests_as_long_backward_as_forward);
+	return UNITY_END();
+}

@@ -1,0 +1,382 @@
+/* Following the drum: loss of synchronization, re-indexing, trim. */
+#include <unity.h>
+
+#include "law_check.h"
+#include "rig.h"
+
+/** A drum speed that leaves 0.4 microsteps of carriage for each of 8 edges in a tick. */
+#define SPEED 8000
+
+void setUp(void)
+{
+	rig_prepare(0);
+}
+
+void tearDown(void)
+{
+}
+
+static bool los1(int side)
+{
+	return rig.controller->los1[side].set;
+}
+
+static bool los2(int side)
+{
+	return rig.controller->los2[side].set;
+}
+
+static void assert_no_los(void)
+{
+	for (int side = 0; side < 2; side++) {
+		TEST_ASSERT_FALSE(los1(side));
+		TEST_ASSERT_FALSE(los2(side));
+	}
+	TEST_ASSERT_EQUAL_UINT16(0, rig.controller->los_recoveries);
+}
+
+/** Bring the carriage to the middle, moving toward a side, the drum turning in a direction. */
+static void go_to_the_middle(int side, int drum_direction)
+{
+	const int toward = lw_side_direction(side);
+
+	rig_prepare(0);
+	rig.params.park_at = LW_PARK_AT_POSITION;
+	rig.params.handover_direction = toward * drum_direction > 0 ? LW_SIDE_PLUS : LW_SIDE_MINUS;
+	rig_track();
+	rig_follow_to(toward * 1000, toward, drum_direction * SPEED);
+	assert_no_los();
+}
+
+/** Slip of the carriage by an amount, seen by nobody. */
+static void slip(int32_t usteps)
+{
+	rig_place(rig.carriage_usteps + usteps);
+}
+
+static void test_no_los_over_many_periods_in_both_directions(void)
+{
+	rig_track();
+	for (int leg = 0; leg < 8; leg++) {
+		rig.drum_edges_per_s = leg % 2 ? -40000 : 40000;
+		rig_ticks(5000);
+		assert_no_los();
+	}
+	/* Either direction alone for more than a period. */
+	rig.drum_edges_per_s = -40000;
+	rig_ticks(10000);
+	assert_no_los();
+	TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
+}
+
+static void test_no_los_when_rocking_anywhere(void)
+{
+	uint64_t seed = 3;
+
+	rig_track();
+	for (int i = 0; i < 4000; i++) {
+		rig.drum_edges_per_s = (int32_t)(next_random(&seed) % 100001) - 49000;
+		rig_ticks((int)(next_random(&seed) % 100));
+		if (i % 1000 == 0) {
+			assert_no_los();
+		}
+	}
+	assert_no_los();
+	TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
+}
+
+static void test_los1_when_the_switch_does_not_trigger(void)
+{
+	for (int side = 0; side < 2; side++) {
+		for (int drum = -1; drum <= 1; drum += 2) {
+			go_to_the_middle(side, drum);
+			rig_set_switch(side, RIG_SWITCH_NEVER);
+			rig_follow_to(lw_side_direction(side) * 7990, lw_side_direction(side),
+				      drum * SPEED);
+			assert_no_los();
+
+			const uint64_t before_us = rig.now_us;
+
+			rig_ticks(60);
+			TEST_ASSERT_TRUE(los1(side));
+			TEST_ASSERT_FALSE(los1(!side));
+			TEST_ASSERT_FALSE(los2(side));
+			TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los1[side].count);
+			TEST_ASSERT_INT32_WITHIN(10, lw_side_direction(side) * 8000,
+						 rig.controller->los1[side].position_q16 /
+							 LW_USTEP);
+			TEST_ASSERT_TRUE(rig.controller->los1[side].time_ms >= before_us / 1000);
+			TEST_ASSERT_TRUE(rig.controller->los1[side].time_ms <= rig.now_us / 1000);
+			/* A launch may be in progress: tracking goes on, the next is inhibited. */
+			TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
+			TEST_ASSERT_EQUAL_UINT16(1 << LW_LAUNCH_INHIBIT_LOS,
+						 lw_controller_launch_inhibit(rig.controller));
+			/* Once for each visit; a working switch does not clear it. */
+			rig_set_switch(side, RIG_SWITCH_WORKS);
+			rig_ticks(20000);
+			TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los1[side].count);
+			TEST_ASSERT_TRUE(los1(side));
+		}
+	}
+}
+
+static void test_los1_counts_each_visit_and_keeps_the_first(void)
+{
+	go_to_the_middle(LW_PLUS, 1);
+	rig_set_switch(LW_PLUS, RIG_SWITCH_NEVER);
+	rig.drum_edges_per_s = 40000;
+	while (rig.controller->los1[LW_PLUS].count < 1) {
+		rig_tick();
+	}
+
+	const struct lw_los_record first = rig.controller->los1[LW_PLUS];
+
+	while (rig.controller->los1[LW_PLUS].count < 2) {
+		rig_tick();
+	}
+	TEST_ASSERT_EQUAL_UINT32(first.time_ms, rig.controller->los1[LW_PLUS].time_ms);
+	TEST_ASSERT_EQUAL_INT32(first.position_q16, rig.controller->los1[LW_PLUS].position_q16);
+}
+
+/** The carriage slips, and the switch of the side ahead triggers at a wrong position. */
+static void check_los2(int side, int drum, int32_t slip_usteps)
+{
+	const int toward = lw_side_direction(side);
+
+	go_to_the_middle(side, drum);
+	slip(slip_usteps);
+	/* Through the reversal and back to the middle: a held correction has its time. */
+	rig.drum_edges_per_s = drum * SPEED;
+	while (!(rig.carriage_usteps * toward > 6000)) {
+		rig_tick();
+	}
+	while (!(rig.carriage_usteps * toward < 3000)) {
+		rig_tick();
+		TEST_ASSERT_TRUE_MESSAGE(rig.carriage_usteps * toward < 8249 + 110,
+					 "too far out");
+	}
+	TEST_ASSERT_TRUE(los2(side));
+	TEST_ASSERT_FALSE(los2(!side));
+	TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los_recoveries);
+	TEST_ASSERT_INT32_WITHIN(2, toward * 7840 - slip_usteps,
+				 rig.controller->los2[side].position_q16 / LW_USTEP);
+	TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
+	TEST_ASSERT_TRUE(law_on_orbit(&rig.controller->motion.law, rig.controller->motion.window));
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+}
+
+static void test_los2_re_indexes_on_either_side_with_either_drum_direction(void)
+{
+	for (int side = 0; side < 2; side++) {
+		for (int drum = -1; drum <= 1; drum += 2) {
+			/* Further out than the law knew: before the switch was expected. */
+			check_los2(side, drum, lw_side_direction(side) * 500);
+			check_los2(side, drum, lw_side_direction(side) * 105);
+		}
+	}
+}
+
+static void test_los2_of_a_carriage_that_lags_is_found_in_the_reversal(void)
+{
+	/* The law is in its reversal before the switch triggers: type 1 and type 2. */
+	go_to_the_middle(LW_PLUS, 1);
+	slip(-250);
+	rig_follow_to(7840, 1, SPEED);
+	rig_ticks(2);
+	TEST_ASSERT_TRUE(los1(LW_PLUS));
+	TEST_ASSERT_TRUE(los2(LW_PLUS));
+	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_CORRECTION, rig.controller->motion.requests);
+	TEST_ASSERT_EQUAL_UINT16(1 << LW_LAUNCH_INHIBIT_LOS | 1 << LW_LAUNCH_INHIBIT_CORRECTION,
+				 lw_controller_launch_inhibit(rig.controller));
+	rig_follow_to(0, -1, SPEED);
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+	TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
+}
+
+static void test_within_the_tolerance_nothing_happens(void)
+{
+	for (int sign = -1; sign <= 1; sign += 2) {
+		go_to_the_middle(LW_PLUS, 1);
+		slip(sign * 97);
+		rig_follow_to(7000, -1, SPEED);
+		assert_no_los();
+		TEST_ASSERT_EQUAL_INT32(sign * 97, rig_error_usteps());
+	}
+}
+
+static void test_a_trigger_counts_only_toward_its_switch(void)
+{
+	/* It triggers while the carriage moves away: by hand, or a late bounce. */
+	go_to_the_middle(LW_MINUS, 1);
+	rig_set_switch(LW_PLUS, RIG_SWITCH_ALWAYS);
+	rig_ticks(5);
+	rig_set_switch(LW_PLUS, RIG_SWITCH_WORKS);
+	rig_ticks(5);
+	assert_no_los();
+	TEST_ASSERT_EQUAL_UINT32(1 + 0, rig.controller->limit[LW_PLUS].triggers -
+						1 /* of the index */);
+}
+
+static void test_only_an_index_clears_los(void)
+{
+	check_los2(LW_PLUS, 1, 500);
+	rig_rest();
+	lw_controller_clear_fault(rig.controller);
+	lw_controller_stop(rig.controller);
+	lw_controller_set_mode(rig.controller, LW_MODE_TRACK);
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_TRUE(los2(LW_PLUS));
+	TEST_ASSERT_EQUAL_UINT16(0, rig.controller->los_recoveries); /* a new launch */
+	rig_index();
+	rig_run_to(LW_STATE_TRACKING);
+	assert_no_los();
+	TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los2[LW_PLUS].count);
+	TEST_ASSERT_EQUAL_UINT16(0, lw_controller_launch_inhibit(rig.controller));
+}
+
+/** Slips once for each side until the controller gives up; the recoveries that it made. */
+static int recoveries_until_fault(int32_t los_recoveries_max, int slips)
+{
+	rig_prepare(0);
+	rig.params.park_at = LW_PARK_AT_POSITION;
+	rig.params.los_recoveries_max = los_recoveries_max;
+	rig_track();
+	rig.drum_edges_per_s = 20000;
+	for (int i = 0; i < slips; i++) {
+		const int toward = i % 2 ? -1 : 1;
+
+		while (!(rig.carriage_usteps * toward > 5000)) {
+			rig_tick();
+		}
+		slip(toward * 300);
+		while (!(rig.carriage_usteps * toward < 5000)) {
+			rig_tick();
+			if (rig.controller->state == LW_STATE_FAULT) {
+				TEST_ASSERT_EQUAL_INT(LW_FAULT_LOS_LIMIT, rig.controller->fault);
+				return i;
+			}
+		}
+	}
+	return slips;
+}
+
+static void test_recoveries_have_a_limit(void)
+{
+	TEST_ASSERT_EQUAL_INT(3, recoveries_until_fault(3, 10));
+	TEST_ASSERT_EQUAL_INT(1, recoveries_until_fault(1, 10));
+	TEST_ASSERT_EQUAL_INT(10, recoveries_until_fault(0, 10));
+}
+
+static void test_counters_do_not_wrap(void)
+{
+	rig_track();
+	rig.params.los_recoveries_max = 0;
+	rig.controller->los2[LW_PLUS].count = UINT16_MAX;
+	rig.controller->los_recoveries = UINT16_MAX;
+	rig_follow_to(5000, 1, SPEED);
+	slip(500);
+	rig_follow_to(7845, 1, SPEED);
+	rig_ticks(2);
+	TEST_ASSERT_TRUE(los2(LW_PLUS));
+	TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, rig.controller->los2[LW_PLUS].count);
+	TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, rig.controller->los_recoveries);
+}
+
+static void test_a_correction_held_is_made_when_tracking_ends(void)
+{
+	go_to_the_middle(LW_PLUS, 1);
+	slip(-250);
+	rig_follow_to(7840, 1, SPEED);
+	rig_rest();
+	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_CORRECTION, rig.controller->motion.requests);
+	lw_controller_stop(rig.controller);
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+	TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
+	lw_controller_set_mode(rig.controller, LW_MODE_CENTRE);
+	rig_run_to(LW_STATE_CENTRED);
+	TEST_ASSERT_INT32_WITHIN(2, 0, rig.carriage_usteps);
+}
+
+static int32_t sweep_end_usteps(void)
+{
+	return lw_law_pos_usteps(rig.controller->motion.window->sweep_end);
+}
+
+static void test_trim_in_the_sweep_comes_at_once(void)
+{
+	go_to_the_middle(LW_PLUS, 1);
+	lw_controller_set_trim(rig.controller, -1000, 500);
+	rig_ticks(1);
+	TEST_ASSERT_EQUAL_INT32(7900, sweep_end_usteps());
+	TEST_ASSERT_EQUAL_INT32(-7950 + 1,
+				lw_law_pos_usteps(rig.controller->motion.window->sweep_begin));
+	rig_follow_to(7900, 1, SPEED);
+	rig_follow_to(7000, -1, SPEED);
+	assert_no_los();
+}
+
+static void test_trim_waits_for_the_end_of_a_reversal(void)
+{
+	go_to_the_middle(LW_PLUS, 1);
+	rig_follow_to(8100, 1, SPEED);
+	lw_controller_set_trim(rig.controller, 400, 0);
+	while (lw_law_region(rig.controller->motion.window, rig.controller->motion.law.m) != 0) {
+		TEST_ASSERT_EQUAL_INT32(8000, sweep_end_usteps());
+		rig_tick();
+	}
+	rig_tick();
+	TEST_ASSERT_EQUAL_INT32(8040, sweep_end_usteps());
+	TEST_ASSERT_TRUE(law_on_orbit(&rig.controller->motion.law, rig.controller->motion.window));
+}
+
+static void test_trim_while_parked_on_the_orbit_and_elsewhere(void)
+{
+	rig_power_up();
+	lw_controller_set_trim(rig.controller, 0, 700); /* before any index */
+	rig_index();
+	rig.drum_edges_per_s = 1000;
+	rig_run_to(LW_STATE_READY);
+	TEST_ASSERT_INT32_WITHIN(2, -7930 - 247, rig.carriage_usteps);
+	lw_controller_set_trim(rig.controller, 400, 300);
+	rig_rest();
+	TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
+	TEST_ASSERT_EQUAL_INT32(8000, sweep_end_usteps());
+	rig_follow_to(0, 1, SPEED);
+	TEST_ASSERT_EQUAL_INT32(8040, sweep_end_usteps());
+	TEST_ASSERT_TRUE(law_on_orbit(&rig.controller->motion.law, rig.controller->motion.window));
+	TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
+}
+
+static void test_a_trim_and_a_correction_together(void)
+{
+	go_to_the_middle(LW_PLUS, 1);
+	slip(500);
+	rig_follow_to(7900, 1, SPEED);
+	lw_controller_set_trim(rig.controller, -500, 0);
+	rig_follow_to(0, -1, SPEED);
+	TEST_ASSERT_EQUAL_INT32(7950, sweep_end_usteps());
+	TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_no_los_over_many_periods_in_both_directions);
+	RUN_TEST(test_no_los_when_rocking_anywhere);
+	RUN_TEST(test_los1_when_the_switch_does_not_trigger);
+	RUN_TEST(test_los1_counts_each_visit_and_keeps_the_first);
+	RUN_TEST(test_los2_re_indexes_on_either_side_with_either_drum_direction);
+	RUN_TEST(test_los2_of_a_carriage_that_lags_is_found_in_the_reversal);
+	RUN_TEST(test_within_the_tolerance_nothing_happens);
+	RUN_TEST(test_a_trigger_counts_only_toward_its_switch);
+	RUN_TEST(test_only_an_index_clears_los);
+	RUN_TEST(test_recoveries_have_a_limit);
+	RUN_TEST(test_counters_do_not_wrap);
+	RUN_TEST(test_a_correction_held_is_made_when_tracking_ends);
+	RUN_TEST(test_trim_in_the_sweep_comes_at_once);
+	RUN_TEST(test_trim_waits_for_the_end_of_a_reversal);
+	RUN_TEST(test_trim_while_parked_on_the_orbit_and_elsewhere);
+	RUN_TEST(test_a_trim_and_a_correction_together);
+	return UNITY_END();
+}
