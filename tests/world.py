@@ -278,9 +278,7 @@ class World:
     def in_sweep(self) -> bool:
         """The position lies between the reversal points."""
         at = self.read("position_usteps", "reversal_plus_usteps", "reversal_minus_usteps")
-        return (
-            at["reversal_minus_usteps"] < at["position_usteps"] < at["reversal_plus_usteps"]
-        )
+        return at["reversal_minus_usteps"] < at["position_usteps"] < at["reversal_plus_usteps"]
 
     def __str__(self) -> str:
         return (

@@ -41,9 +41,7 @@ class Result:
 
 def result(name: str, target: str, options: str, values: list[float], unit: str) -> Result:
     """Over the values of one measurement."""
-    return Result(
-        name, target, options, min(values), statistics.fmean(values), max(values), unit
-    )
+    return Result(name, target, options, min(values), statistics.fmean(values), max(values), unit)
 
 
 def unpaced() -> list[Result]:

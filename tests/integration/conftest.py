@@ -4,7 +4,8 @@
     --target serial:/dev/ttyX    a slave that is there already; it must have the bench block
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from slave import RawLine, Simulator, Slave, bring_to_rest, start_simulator
@@ -33,6 +34,23 @@ def simulator(
     yield running
     if running.process.poll() is None:
         assert running.stop() == 0
+
+
+@pytest.fixture
+def own_simulator(target: str) -> Iterator[Callable[..., Simulator]]:
+    """Starts simulators of the test's own, and ends what the test has left running."""
+    if target != "sim":
+        pytest.skip("needs a simulator of its own")
+    running = []
+
+    def start(folder: Path, *options: str) -> Simulator:
+        running.append(start_simulator(folder, *options))
+        return running[-1]
+
+    yield start
+    for simulator in running:
+        simulator.process.kill()
+        simulator.process.wait()
 
 
 @pytest.fixture(scope="module")

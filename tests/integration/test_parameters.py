@@ -1,11 +1,12 @@
 """Staged parameters, APPLY, REVERT, SAVE, FACTORY, and what survives a restart."""
 
 import signal
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from levelwind.map_table import POINTS, Command, Flag, Reason, Result, State
-from slave import Slave, start_simulator
+from slave import Simulator, Slave
 
 PARAMETERS = [point for point in POINTS.values() if point.block == "parameters"]
 
@@ -86,11 +87,11 @@ def test_parameters_are_refused_while_tracking(slave: Slave) -> None:
     assert slave.read("pitch_um") == 12_000
 
 
-def test_save_survives_a_kill(target: str, tmp_path: Path) -> None:
-    if target != "sim":
-        pytest.skip("needs a simulator of its own to kill")
+def test_save_survives_a_kill(
+    own_simulator: Callable[..., Simulator], tmp_path: Path
+) -> None:
     storage = tmp_path / "parameters.bin"
-    first = start_simulator(tmp_path, "--storage", str(storage))
+    first = own_simulator(tmp_path, "--storage", str(storage))
     slave = Slave(str(first.port))
     assert slave.flag(Flag.DEFAULTS_LOADED)
     slave.write("pitch_um", 11_000)
@@ -102,7 +103,7 @@ def test_save_survives_a_kill(target: str, tmp_path: Path) -> None:
     slave.close()
     first.stop(signal.SIGKILL)
 
-    second = start_simulator(tmp_path, "--storage", str(storage))
+    second = own_simulator(tmp_path, "--storage", str(storage))
     slave = Slave(str(second.port))
     for offset in (0, 1000, 2000):
         assert slave.read("pitch_um", offset) == 11_000
@@ -111,10 +112,10 @@ def test_save_survives_a_kill(target: str, tmp_path: Path) -> None:
     assert second.stop() == 0
 
 
-def test_save_that_fails_says_so(target: str, tmp_path: Path) -> None:
-    if target != "sim":
-        pytest.skip("needs a simulator of its own")
-    running = start_simulator(tmp_path, "--storage", str(tmp_path / "missing" / "parameters.bin"))
+def test_save_that_fails_says_so(
+    own_simulator: Callable[..., Simulator], tmp_path: Path
+) -> None:
+    running = own_simulator(tmp_path, "--storage", str(tmp_path / "missing" / "parameters.bin"))
     slave = Slave(str(running.port))
     assert slave.command(Command.SAVE) == Result.FAILED
     assert slave.read("command_reason") == Reason.STORAGE_FAILED

@@ -183,24 +183,34 @@ def parameter_sets(draw: st.DrawFn) -> dict[str, int]:
     half_um = ramp_um + draw(st.integers(4000, 30_000))
     centre_um = draw(st.integers(-40_000, 40_000))
     clearance_um = draw(st.integers(200, 1500))
-    beyond_um = ramp_um + round(4 * um_per_ustep)
+    # The overshoot reaches about as far as the flange, on either side.
+    beyond_plus_um, beyond_minus_um = (
+        ramp_um + round(draw(st.integers(-10, 30)) * um_per_ustep) for _ in range(2)
+    )
+    edges_per_pulse = draw(st.sampled_from((1, 2, 4)))
+    one_step_um = 20_000 * 1440 * edges_per_pulse // usteps_per_rev  # pitch of one step per edge
     values |= {
         "microsteps_per_rev": usteps_per_rev,
-        "pitch_um": draw(st.integers(500, 20_000)),
+        "pitch_um": draw(
+            st.one_of(
+                st.integers(500, 20_000),
+                st.integers(one_step_um * 995 // 1000, one_step_um),
+            ).filter(lambda pitch_um: pitch_um <= 100_000)
+        ),
         "overshoot_um": ramp_um,
         "slope_tolerance_ppm": draw(st.sampled_from((500, 5000, 50_000))),
-        "encoder_edges_per_pulse": draw(st.sampled_from((1, 2, 4))),
+        "encoder_edges_per_pulse": edges_per_pulse,
         "reversal_plus_um": centre_um + half_um,
         "reversal_minus_um": centre_um - half_um,
-        "flange_plus_um": centre_um + half_um + 2 * beyond_um,
-        "flange_minus_um": centre_um - half_um - 2 * beyond_um,
+        "flange_plus_um": centre_um + half_um + beyond_plus_um,
+        "flange_minus_um": centre_um - half_um - beyond_minus_um,
         "switch_plus_um": centre_um + half_um - clearance_um,
         "switch_minus_um": centre_um - half_um + clearance_um,
         "switch_tolerance_um": 100,
         "switch_hysteresis_um": 100,
         "park_at": 0,
         "centre_position_um": centre_um,
-        "travel_um": 2 * half_um + 4 * beyond_um,
+        "travel_um": 2 * half_um + beyond_plus_um + beyond_minus_um,
         "dwell_plus_millirev": draw(st.sampled_from((0, 0, 15, 500))),
     }
     if draw(st.booleans()):

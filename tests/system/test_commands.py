@@ -112,7 +112,7 @@ STATES: dict[str, tuple[State, Callable[[], World]]] = {
 
 def expected_refusal(name: str, state: State, write: dict[str, int]) -> Reason | None:
     """Why a write must be refused here; None if it must be taken."""
-    (register, value), = write.items()
+    ((register, value),) = write.items()
     busy = (
         Reason.BUSY_TRACKING
         if state == State.TRACKING

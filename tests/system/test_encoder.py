@@ -15,9 +15,16 @@ def bench(world: World, command: BenchCommand, argument: int) -> None:
     assert world.value("bench_result") == 0
 
 
+MODES = {  # edges per pulse: the edges that so many transitions of the encoder make
+    1: lambda transitions: (transitions + 3) // 4,  # of channel A while B is low
+    2: lambda transitions: (transitions + 1) // 2,  # of channel A
+    4: lambda transitions: transitions,
+}
+
+
 def counted_edges(world: World) -> int:
-    """What the decoder must have counted had it seen every transition: those of channel A."""
-    return (world.value("bench_transitions") + 1) // 2
+    """What the decoder must have counted had it seen every transition."""
+    return MODES[world.value("active.encoder_edges_per_pulse")](world.value("bench_transitions"))
 
 
 def launched(speed: int = 20_000) -> World:
@@ -53,16 +60,23 @@ def test_no_edge_is_lost_at_top_speed(speed: int):
     assert world.permit
 
 
-def test_dither_at_rest_nets_to_zero():
-    world = World().index()
-    world.drum(5_000)
-    world.run(3.3)
-    world.stop_drum()
-    before = world.read("net_edges", "m", "u", "position_um")
-    for _ in range(20):
-        bench(world, BenchCommand.DITHER, 1000)
+@pytest.mark.parametrize("edges_per_pulse", MODES)
+def test_dither_at_rest_nets_to_zero(edges_per_pulse: int):
+    """Wherever in its pulse the encoder rests."""
+    world = World(encoder_edges_per_pulse=edges_per_pulse, pitch_um=6000, overshoot_um=2400)
+    world.index()
+    rests = set()
+    for stop in range(12):
+        world.drum(500 + 37 * stop, edges_per_s2=1e6)
+        world.run(0.3)
+        world.stop_drum()
+        rests.add(world.value("bench_transitions") % 4)
+        before = world.read("net_edges", "m", "u", "position_um")
+        assert before["net_edges"] == counted_edges(world)
+        world.write(bench_argument=1000, bench_command=BenchCommand.DITHER)
         world.run(0.1)
-    assert world.read("net_edges", "m", "u", "position_um") == before
+        assert world.read("net_edges", "m", "u", "position_um") == before
+    assert rests == {0, 1, 2, 3}
     assert world.value("illegal_transitions") == 0
     assert world.permit
 
@@ -114,7 +128,7 @@ def test_illegal_transitions_are_counted_and_do_not_move():
     assert "los" not in world.flags
 
 
-@pytest.mark.parametrize("edges_per_pulse", [1, 2, 4])
+@pytest.mark.parametrize("edges_per_pulse", MODES)
 def test_a_rocking_drum_leaves_the_ideal_pattern(edges_per_pulse: int):
     """A launch with the drum pulled back and forth: every stop is where the ideal screw is."""
     rng = random.Random(edges_per_pulse)

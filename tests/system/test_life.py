@@ -143,9 +143,10 @@ def test_jog_ends_at_the_reversal_points_and_keeps_the_index(direction: int):
 @pytest.mark.parametrize("direction", [1, -1])
 def test_jog_without_index_ends_at_the_switch(direction: int):
     world = World(1, 40_000 * direction)
-    hold_jog(world, direction, 2.0)
-    world.write(jog=0)
+    with pytest.raises(Refused, match="06"):
+        hold_jog(world, direction, 4.0)  # time enough to the end stop
     world.run(0.5)
+    assert world.state == State.UNINDEXED
     assert 78_400 <= abs(world.truth.carriage_um) < 82_000
     with pytest.raises(Refused, match="06, overtravel"):
         world.write(jog=direction)
@@ -399,13 +400,17 @@ def jog_outward(world: World, sign: int) -> None:
 
 
 def trim_while_held(world: World, sign: int) -> None:
-    """Move the reversal to the other side of the resting carriage."""
+    """Stop a jog near its limit, then trim the reversal to the other side of the carriage."""
     hold_jog(world, -sign, 0.5)
     world.write(jog=0)
     world.run(1.0)
-    hold_jog(world, sign, 3.0)
+    world.write(jog=sign)
+    while sign * world.value("position_um") < 79_600:
+        world.run(0.01)
+        world.write(jog=sign)
     world.write(command=Command.STOP)
     world.run(0.5)
+    assert world.state == State.READY
     world.write(trim_plus_um=-1000, trim_minus_um=1000)
     world.mode(Mode.TRACK)
 

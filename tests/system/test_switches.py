@@ -12,7 +12,7 @@ BAD_AT_ONCE = (SwitchFault.NC_WIRE_BROKEN, SwitchFault.SHORTED)  # seen with the
 
 def indexed(seed: int, bounce_ms: int) -> tuple[float, int]:
     """Where an indexing leaves the carriage, and the span that it has found."""
-    world = World(seed)
+    world = World(seed, carriage_um=137 * seed)  # another phase between steps and ticks
     world.write(bench_bounce_ms=bounce_ms)
     world.index().run(0.3)
     return world.truth.carriage_usteps - world.value("position_usteps"), world.value(
@@ -56,6 +56,32 @@ def test_bounce_gives_one_event_per_passage(edges_per_s: int, drum: int):
         assert world.value(f"switch_{side}_triggers") - passages[side] == real
     assert "los" not in world.flags
     assert world.permit
+
+
+@pytest.mark.parametrize("drum", [1, -1], ids=["in", "out"])
+@pytest.mark.parametrize("side", SIDES)
+def test_a_trigger_while_the_carriage_moves_away_is_not_judged(side: str, drum: int):
+    """The carriage's direction counts, not the drum's."""
+    world = World().index()
+    orbit = world.orbit()
+    world.drum(drum * 20_000)
+    away = -1 if side == "plus" else 1
+    world.run_until(
+        lambda: (
+            world.truth.carriage_um_per_s * away > 50_000
+            and abs(world.value("position_um")) < 5_000
+        )
+    )
+    before = world.value(f"switch_{side}_triggers")
+    world.write(**{f"bench_switch_{side}_fault": SwitchFault.STUCK_ACTUATED})
+    world.run(0.05)
+    assert world.value(f"switch_{side}_triggers") == before + 1
+    assert "los" not in world.flags
+    world.check_follows(orbit)
+    world.write(**{f"bench_switch_{side}_fault": SwitchFault.NONE})
+    world.run(5.0)
+    assert world.permit
+    world.check_follows(orbit)
 
 
 @pytest.mark.parametrize("side", SIDES)

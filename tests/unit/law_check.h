@@ -40,8 +40,8 @@ static inline bool law_on_orbit(const struct lw_law *law, const struct lw_law_wi
 	const bool at_plus = m >= end;
 
 	if (law->dwell_edges != 0 &&
-	    (law->u != 0 || law->dwell_edges > (at_plus ? window->dwell_plus_edges
-							: window->dwell_minus_edges))) {
+	    (law->u != 0 ||
+	     law->dwell_edges > (at_plus ? window->dwell_plus_edges : window->dwell_minus_edges))) {
 		return false;
 	}
 	if ((law->u == ks || law->u == -ks) && begin <= m && m < end) {

@@ -321,8 +321,7 @@ static void test_jog_ends_by_itself_when_it_is_not_written_again(void)
 	TEST_ASSERT_FALSE(rig.controller->halting);
 	rig_ticks(1);
 	TEST_ASSERT_TRUE(rig.controller->halting);
-	assert_refused(LW_REASON_BUSY_MOVING,
-		       lw_controller_allow_jog(rig.controller, -1, &why));
+	assert_refused(LW_REASON_BUSY_MOVING, lw_controller_allow_jog(rig.controller, -1, &why));
 	rig_run_to(LW_STATE_UNINDEXED);
 }
 
@@ -334,8 +333,7 @@ static void test_jog_zero_ends_it_and_is_always_allowed(void)
 	lw_controller_jog(rig.controller, 1, rig.now_us);
 	rig_ticks(100);
 	TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_jog(rig.controller, 1, &why));
-	assert_refused(LW_REASON_BUSY_MOVING,
-		       lw_controller_allow_jog(rig.controller, -1, &why));
+	assert_refused(LW_REASON_BUSY_MOVING, lw_controller_allow_jog(rig.controller, -1, &why));
 	assert_refused(LW_REASON_BUSY_MOVING, lw_controller_allow_index(rig.controller, &why));
 	TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_jog(rig.controller, 0, &why));
 	lw_controller_jog(rig.controller, 0, rig.now_us);
@@ -368,13 +366,11 @@ static void test_jog_is_refused_while_tracking_a_turning_drum_or_indexing(void)
 	rig_track();
 	rig.drum_edges_per_s = 5000;
 	rig_ticks(100);
-	assert_refused(LW_REASON_BUSY_TRACKING,
-		       lw_controller_allow_jog(rig.controller, 1, &why));
+	assert_refused(LW_REASON_BUSY_TRACKING, lw_controller_allow_jog(rig.controller, 1, &why));
 	assert_refused(LW_REASON_DRUM_MOVING, lw_controller_allow_index(rig.controller, &why));
 	rig_rest();
 	rig_index();
-	assert_refused(LW_REASON_BUSY_MOVING,
-		       lw_controller_allow_jog(rig.controller, 1, &why));
+	assert_refused(LW_REASON_BUSY_MOVING, lw_controller_allow_jog(rig.controller, 1, &why));
 }
 
 static void test_busy_says_why(void)

@@ -23,8 +23,8 @@ static void run_to_ready(void)
 static void check_index(int32_t from_usteps, enum lw_side index_switch, enum lw_park_at park_at)
 {
 	rig_prepare(from_usteps);
-	rig.params.index_switch = index_switch;
-	rig.params.park_at = park_at;
+	rig.params.index_switch = (int32_t)index_switch;
+	rig.params.park_at = (int32_t)park_at;
 	rig.params.park_position_um = 12340;
 	rig_power_up();
 	rig_index();
@@ -36,8 +36,7 @@ static void check_index(int32_t from_usteps, enum lw_side index_switch, enum lw_
 	if (park_at == LW_PARK_AT_POSITION) {
 		TEST_ASSERT_INT32_WITHIN(1, 1234, rig.carriage_usteps);
 	} else {
-		TEST_ASSERT_INT32_WITHIN(2,
-					 (index_switch == LW_SIDE_PLUS ? -1 : 1) * (8000 + 247),
+		TEST_ASSERT_INT32_WITHIN(2, (index_switch == LW_SIDE_PLUS ? -1 : 1) * (8000 + 247),
 					 rig.carriage_usteps);
 	}
 }
@@ -78,16 +77,15 @@ static void test_a_trigger_on_the_last_microstep_of_the_ramp(void)
 		rig_ticks(30);
 		rig.params.index_rate_edges_per_s = 50000;
 		rig_run_to(LW_STATE_SPAN_CHECK);
-		TEST_ASSERT_EQUAL_INT32(-direction * rig.derived.ks,
-					rig.controller->motion.law.u);
+		TEST_ASSERT_EQUAL_INT32(-direction * rig.derived.ks, rig.controller->motion.law.u);
 	}
 }
 
 static void test_states_of_an_index_in_order(void)
 {
-	static const enum lw_state states[] = {LW_STATE_BACKING_OFF, LW_STATE_SEEKING,
+	static const enum lw_state states[] = {LW_STATE_BACKING_OFF,    LW_STATE_SEEKING,
 					       LW_STATE_INDEX_REVERSAL, LW_STATE_SPAN_CHECK,
-					       LW_STATE_PARKING, LW_STATE_READY,
+					       LW_STATE_PARKING,        LW_STATE_READY,
 					       LW_STATE_TRACKING};
 
 	rig_prepare(7900);
@@ -97,8 +95,8 @@ static void test_states_of_an_index_in_order(void)
 		rig.drum_edges_per_s = states[i] == LW_STATE_TRACKING ? 0 : 1000;
 		rig_run_to(states[i]);
 		TEST_ASSERT_EQUAL(i < 5, lw_controller_moving(rig.controller));
-		TEST_ASSERT_EQUAL_UINT32(i < 5 ? 10000u : 0u, lw_controller_timer_rate_edges_per_s(
-								      rig.controller));
+		TEST_ASSERT_EQUAL_UINT32(i < 5 ? 10000u : 0u,
+					 lw_controller_timer_rate_edges_per_s(rig.controller));
 	}
 }
 
@@ -220,7 +218,7 @@ static void check_span(enum lw_side index_switch, int32_t shift)
 	const int other = index_switch == LW_SIDE_PLUS ? LW_MINUS : LW_PLUS;
 
 	rig_prepare(0);
-	rig.params.index_switch = index_switch;
+	rig.params.index_switch = (int32_t)index_switch;
 	rig.params.span_tolerance_um = 1000;
 	rig.switch_at_usteps[other] += shift;
 	rig_power_up();
@@ -262,19 +260,53 @@ static void test_span_trigger_just_beyond_the_tolerance_in_one_tick(void)
 
 static void test_back_off_from_an_overtravel_switch(void)
 {
-	rig_prepare(8240);
+	for (int side = 0; side < 2; side++) {
+		const int outward = lw_side_direction(side);
+
+		rig_prepare(outward * 8240);
+		/* The limit switch is broken: the overtravel switch alone says where it is. */
+		rig.switches[side] = RIG_SWITCH_NEVER;
+		rig_power_up();
+		lw_controller_overtravel(rig.controller, side, true);
+		rig_ticks(2);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state);
+		rig_index();
+		TEST_ASSERT_EQUAL_INT(LW_STATE_BACKING_OFF, rig.controller->state);
+		TEST_ASSERT_TRUE(lw_controller_stepper_enabled(rig.controller));
+		while (outward * rig.carriage_usteps > 8200) {
+			rig_tick();
+		}
+		lw_controller_overtravel(rig.controller, side, false);
+		rig_set_switch(side, RIG_SWITCH_WORKS);
+		run_to_ready();
+	}
+}
+
+static void test_backing_off_leaves_room_for_the_ramp_and_no_more(void)
+{
+	rig_prepare(7900);
 	rig_power_up();
-	lw_controller_overtravel(rig.controller, LW_PLUS, true);
-	rig_ticks(2);
-	TEST_ASSERT_EQUAL_INT(LW_FAULT_OVERTRAVEL_PLUS, rig.controller->fault);
 	rig_index();
-	TEST_ASSERT_EQUAL_INT(LW_STATE_BACKING_OFF, rig.controller->state);
-	TEST_ASSERT_TRUE(lw_controller_stepper_enabled(rig.controller));
-	while (rig.carriage_usteps > 8200) {
+	while (rig.controller->limit[LW_PLUS].active) {
 		rig_tick();
 	}
-	lw_controller_overtravel(rig.controller, LW_PLUS, false);
-	run_to_ready();
+
+	const int32_t released_usteps = rig.carriage_usteps;
+
+	while (rig.controller->state == LW_STATE_BACKING_OFF) {
+		rig_tick();
+	}
+	/* The hysteresis, and two ramps of 247 microsteps. */
+	TEST_ASSERT_INT32_WITHIN(6, 150 + 2 * 249, released_usteps - rig.carriage_usteps);
+}
+
+static void test_both_overtravel_switches_are_no_place_to_start(void)
+{
+	rig_power_up();
+	lw_controller_overtravel(rig.controller, LW_PLUS, true);
+	lw_controller_overtravel(rig.controller, LW_MINUS, true);
+	rig_index();
+	TEST_ASSERT_EQUAL_INT(LW_FAULT_BOTH_SWITCHES_ACTIVE, rig.controller->fault);
 }
 
 static void test_stop_in_every_state_of_an_index(void)
@@ -386,6 +418,8 @@ int main(void)
 	RUN_TEST(test_span_of_the_switches);
 	RUN_TEST(test_span_trigger_just_beyond_the_tolerance_in_one_tick);
 	RUN_TEST(test_back_off_from_an_overtravel_switch);
+	RUN_TEST(test_backing_off_leaves_room_for_the_ramp_and_no_more);
+	RUN_TEST(test_both_overtravel_switches_are_no_place_to_start);
 	RUN_TEST(test_stop_in_every_state_of_an_index);
 	RUN_TEST(test_stop_at_any_moment_of_an_index_comes_to_rest);
 	RUN_TEST(test_stop_in_a_dwell_stops_at_once);

@@ -129,6 +129,7 @@ static void test_paper_row_ka_and_nr_follow_from_ks_and_overshoot(void)
 		/* Nr is whole: half a slope of overshoot for each unit, and Ks is within 2 %. */
 		TEST_ASSERT_TRUE(error_q16 <= derived.ks + asked_q16 / 50);
 		TEST_ASSERT_TRUE(error_q16 >= -derived.ks - asked_q16 / 50);
+		TEST_ASSERT_EQUAL_INT64(2 * asked_q16 / 27307 + 1, derived.nr);
 		TEST_ASSERT_EQUAL_INT64(2 * (int64_t)derived.overshoot_q16 / derived.ks + 1,
 					derived.nr);
 	}
@@ -179,8 +180,7 @@ static void test_paper_row_parking_place(void)
 	const int32_t park_usteps = -1234;
 
 	/* The last reversal begins one overshoot before the place; it ends in rest there. */
-	window.sweep_end =
-		(int32_t)(park_usteps * LW_USTEP - lw_move_overshoot_q16(KA, NR));
+	window.sweep_end = (int32_t)(park_usteps * LW_USTEP - lw_move_overshoot_q16(KA, NR));
 	law.m = -7000 * LW_USTEP;
 	do {
 		lw_law_edge(&law, &window, 1);

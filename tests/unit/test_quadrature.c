@@ -55,10 +55,9 @@ static void test_all_transitions_in_all_modes(void)
 				const bool illegal = (from ^ to) == 3;
 
 				start(from);
-				TEST_ASSERT_EQUAL_INT(from == to || illegal
-							      ? 0
-							      : expected(from, to, modes[mode]),
-						      update(to));
+				TEST_ASSERT_EQUAL_INT(
+					from == to || illegal ? 0 : expected(from, to, modes[mode]),
+					update(to));
 				TEST_ASSERT_EQUAL_UINT32(illegal, quadrature.illegal_transitions);
 				TEST_ASSERT_EQUAL_UINT8(to, quadrature.levels);
 			}
@@ -111,9 +110,8 @@ static void test_inversions(void)
 		config.invert_b = bits & 2;
 		config.invert_direction = bits & 4;
 		/* Each of the three turns the direction round. */
-		const int sign = (config.invert_a != config.invert_b) != config.invert_direction
-					 ? -1
-					 : 1;
+		const int sign =
+			(config.invert_a != config.invert_b) != config.invert_direction ? -1 : 1;
 
 		start(0);
 		TEST_ASSERT_EQUAL_INT(sign * 40, count(10, 1));

@@ -71,8 +71,9 @@ static void test_round_trip_of_random_sets(void)
 
 static void test_the_layout_is_what_the_header_says(void)
 {
-	static const uint8_t head[] = {'L', 'W', 'P', 'S', LW_MAP_VERSION, 0, LW_MAP_PARAMS_COUNT,
-				       0,   0x68, 1, 0, 0}; /* the first value: 360 */
+	static const uint8_t head[] = {
+		'L',  'W', 'P', 'S', LW_MAP_VERSION, 0, LW_MAP_PARAMS_COUNT, 0,
+		0x68, 1,   0,   0}; /* the first value: 360 */
 	uint8_t copy[LW_RECORD_SIZE];
 
 	TEST_ASSERT_EQUAL_HEX8_ARRAY(head, record, sizeof(head));

@@ -152,11 +152,11 @@ static void check_los2(int side, int drum, int32_t slip_usteps)
 	}
 	while (!(rig.carriage_usteps * toward < 3000)) {
 		rig_tick();
-		TEST_ASSERT_TRUE_MESSAGE(rig.carriage_usteps * toward < 8249 + 110,
-					 "too far out");
+		TEST_ASSERT_TRUE_MESSAGE(rig.carriage_usteps * toward < 8249 + 110, "too far out");
 	}
 	TEST_ASSERT_TRUE(los2(side));
 	TEST_ASSERT_FALSE(los2(!side));
+	TEST_ASSERT_FALSE(los1(side)); /* it did trigger */
 	TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los_recoveries);
 	TEST_ASSERT_INT32_WITHIN(2, toward * 7840 - slip_usteps,
 				 rig.controller->los2[side].position_q16 / LW_USTEP);
@@ -213,8 +213,8 @@ static void test_a_trigger_counts_only_toward_its_switch(void)
 	rig_set_switch(LW_PLUS, RIG_SWITCH_WORKS);
 	rig_ticks(5);
 	assert_no_los();
-	TEST_ASSERT_EQUAL_UINT32(1 + 0, rig.controller->limit[LW_PLUS].triggers -
-						1 /* of the index */);
+	TEST_ASSERT_EQUAL_UINT32(1 + 0,
+				 rig.controller->limit[LW_PLUS].triggers - 1 /* of the index */);
 }
 
 static void test_only_an_index_clears_los(void)
@@ -347,16 +347,35 @@ static void test_trim_while_parked_on_the_orbit_and_elsewhere(void)
 	TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
 }
 
-static void test_a_trim_and_a_correction_together(void)
+static void test_a_trim_and_a_held_correction_together(void)
 {
 	go_to_the_middle(LW_PLUS, 1);
-	slip(500);
-	rig_follow_to(7900, 1, SPEED);
+	slip(-250);
+	rig_follow_to(7840, 1, SPEED);
+	rig_ticks(2);
 	lw_controller_set_trim(rig.controller, -500, 0);
+	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_CORRECTION | LW_MOTION_REQUEST_WINDOW,
+				rig.controller->motion.requests);
 	rig_follow_to(0, -1, SPEED);
 	TEST_ASSERT_EQUAL_INT32(7950, sweep_end_usteps());
 	TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
 	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+}
+
+static void test_a_hand_over_beyond_the_switch_is_no_los(void)
+{
+	/* The switch has triggered before the drum was followed. */
+	rig.params.park_at = LW_PARK_AT_POSITION;
+	rig_track();
+	do {
+		lw_controller_jog(rig.controller, 1, rig.now_us);
+		rig_ticks(100);
+	} while (rig.controller->state == LW_STATE_JOGGING && rig.carriage_usteps < 7900);
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_TRUE(rig.carriage_usteps > 7900);
+	rig_follow_to(8050, 1, SPEED);
+	rig_follow_to(0, -1, SPEED);
+	assert_no_los();
 }
 
 int main(void)
@@ -377,6 +396,7 @@ int main(void)
 	RUN_TEST(test_trim_in_the_sweep_comes_at_once);
 	RUN_TEST(test_trim_waits_for_the_end_of_a_reversal);
 	RUN_TEST(test_trim_while_parked_on_the_orbit_and_elsewhere);
-	RUN_TEST(test_a_trim_and_a_correction_together);
+	RUN_TEST(test_a_trim_and_a_held_correction_together);
+	RUN_TEST(test_a_hand_over_beyond_the_switch_is_no_los);
 	return UNITY_END();
 }

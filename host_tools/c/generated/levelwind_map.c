@@ -402,13 +402,13 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "flange_plus_um", .unit = "um",
 		.text = "Farthest place on the plus side that the carriage may be commanded to",
 		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I32, .address = 124,
-		.words = 2, .min = -500000, .max = 500000, .default_value = 82500,
+		.words = 2, .min = -500000, .max = 500000, .default_value = 83000,
 	},
 	{
 		.name = "flange_minus_um", .unit = "um",
 		.text = "Farthest place on the minus side that the carriage may be commanded to",
 		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_I32, .address = 126,
-		.words = 2, .min = -500000, .max = 500000, .default_value = -82500,
+		.words = 2, .min = -500000, .max = 500000, .default_value = -83000,
 	},
 	{
 		.name = "switch_plus_um", .unit = "um",

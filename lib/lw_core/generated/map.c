@@ -129,12 +129,12 @@ const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT] = {
 	{
 		.address = 124, .count = 1, .offset = offsetof(struct lw_params, flange_plus_um),
 		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000,
-		.max = 500000, .default_value = 82500,
+		.max = 500000, .default_value = 83000,
 	},
 	{
 		.address = 126, .count = 1, .offset = offsetof(struct lw_params, flange_minus_um),
 		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = -500000,
-		.max = 500000, .default_value = -82500,
+		.max = 500000, .default_value = -83000,
 	},
 	{
 		.address = 128, .count = 1, .offset = offsetof(struct lw_params, switch_plus_um),
@@ -791,8 +791,8 @@ const struct lw_params lw_params_default = {
 	.slope_tolerance_ppm = 500,
 	.reversal_plus_um = 80000,
 	.reversal_minus_um = -80000,
-	.flange_plus_um = 82500,
-	.flange_minus_um = -82500,
+	.flange_plus_um = 83000,
+	.flange_minus_um = -83000,
 	.switch_plus_um = 78400,
 	.switch_minus_um = -78400,
 	.switch_tolerance_um = 1000,

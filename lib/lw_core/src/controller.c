@@ -115,6 +115,15 @@ void lw_controller_configure(struct lw_controller *controller, const struct lw_p
 	if (!need_index) {
 		return;
 	}
+	/* The contacts may mean something else now. */
+	for (int side = 0; side < 2; side++) {
+		struct lw_limit_switch *limit = &controller->limit[side];
+		const uint32_t triggers = limit->triggers;
+
+		lw_limit_switch_init(limit, &controller->limit_config, limit->no_closed,
+				     limit->nc_closed, controller->now_us);
+		limit->triggers = triggers;
+	}
 	controller->trim_plus_um = 0;
 	controller->trim_minus_um = 0;
 	lw_controller_cut(controller);
@@ -369,7 +378,8 @@ void lw_controller_jog(struct lw_controller *controller, int direction, uint64_t
 		target_usteps = direction > 0 ? lw_law_pos_usteps(window.sweep_end) - 2
 					      : lw_law_pos_usteps(window.sweep_begin) + 2;
 		rest_state = LW_STATE_READY;
-		if (direction * (target_usteps - lw_law_pos_usteps(controller->motion.law.m)) <= 0) {
+		if (direction * (target_usteps - lw_law_pos_usteps(controller->motion.law.m)) <=
+		    0) {
 			return; /* at the limit already */
 		}
 		if (controller->state == LW_STATE_TRACKING) {

@@ -36,10 +36,10 @@ bool lw_move_to(const struct lw_law *law, struct lw_law_window *window, int32_t 
 		return false;
 	}
 
-	/* Ramp up and down over n edges each cover ka * n * n together. */
+	/* Ramp up and down over n edges each cover ka * n * n together; ka is below a microstep. */
 	int32_t n = integer_sqrt(distance / ka);
 
-	n = n < 1 ? 1 : n > nr ? nr : n;
+	n = n > nr ? nr : n;
 
 	const int32_t ramp_end = (int32_t)(law->m + direction * lw_move_ramp_q16(ka, n));
 	const int32_t slow_down = (int32_t)(target - direction * lw_move_overshoot_q16(ka, n));

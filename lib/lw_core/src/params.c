@@ -35,10 +35,10 @@ int32_t lw_params_q16_to_um(const struct lw_params *params, int64_t q16)
 				       (int64_t)params->microsteps_per_rev * LW_USTEP);
 }
 
-/** The largest number of whole micrometres that is at most so many microsteps. */
+/** A place in micrometres, rounded so that it is at most so many microsteps. */
 static int32_t um_at_most(const struct lw_params *params, int32_t usteps)
 {
-	int32_t um = lw_params_q16_to_um(params, (int64_t)usteps * LW_USTEP) + 1;
+	int32_t um = lw_params_q16_to_um(params, (int64_t)usteps * LW_USTEP);
 
 	while (lw_params_um_to_usteps(params, um) > usteps) {
 		um--;
@@ -46,7 +46,7 @@ static int32_t um_at_most(const struct lw_params *params, int32_t usteps)
 	return um;
 }
 
-/** The smallest number of whole micrometres that is at least so many microsteps. */
+/** A place in micrometres, rounded so that it is at least so many microsteps. */
 static int32_t um_at_least(const struct lw_params *params, int32_t usteps)
 {
 	return -um_at_most(params, -usteps);
@@ -90,9 +90,9 @@ static int64_t smallest_pitch_um(const struct lw_params *params)
 
 	edges_per_drum_rev(params, &edges_num, &edges_den);
 
-	const int64_t per_um = 2 * LW_USTEP * params->microsteps_per_rev * edges_den;
+	const int64_t per_um = (int64_t)2 * LW_USTEP * params->microsteps_per_rev * edges_den;
 
-	return (params->screw_lead_um * edges_num + per_um - 1) / per_um;
+	return ((int64_t)params->screw_lead_um * edges_num + per_um - 1) / per_um;
 }
 
 /** Overshoot past the entry of a reversal, Q16.16 (P5). 2^16 * 2^16 / 2 at the most. */
@@ -181,11 +181,10 @@ static int refuse_reversal(const struct lw_params *params, struct lw_refusal *wh
 			   enum lw_reason reason, int side, int32_t limit_usteps, int32_t limit_um)
 {
 	if (params->expert_mode) {
-		return side == LW_PLUS
-			       ? refuse(why, reason, LW_ADDRESS_RAW_REVERSAL_PLUS_USTEPS,
-					params->raw_reversal_plus_usteps, limit_usteps)
-			       : refuse(why, reason, LW_ADDRESS_RAW_REVERSAL_MINUS_USTEPS,
-					params->raw_reversal_minus_usteps, limit_usteps);
+		return side == LW_PLUS ? refuse(why, reason, LW_ADDRESS_RAW_REVERSAL_PLUS_USTEPS,
+						params->raw_reversal_plus_usteps, limit_usteps)
+				       : refuse(why, reason, LW_ADDRESS_RAW_REVERSAL_MINUS_USTEPS,
+						params->raw_reversal_minus_usteps, limit_usteps);
 	}
 	return side == LW_PLUS ? refuse(why, reason, LW_ADDRESS_REVERSAL_PLUS_UM,
 					params->reversal_plus_um, limit_um)
@@ -208,7 +207,8 @@ static int check_geometry(const struct lw_params *params, const struct lw_derive
 	}
 	if (derived->switch_usteps[LW_PLUS] >= plus) {
 		return refuse(why, LW_REASON_SWITCH_PLUS_OUTSIDE, LW_ADDRESS_SWITCH_PLUS_UM,
-			      params->switch_plus_um, lw_params_q16_to_um(params, (int64_t)plus * LW_USTEP));
+			      params->switch_plus_um,
+			      lw_params_q16_to_um(params, (int64_t)plus * LW_USTEP));
 	}
 	if (derived->switch_usteps[LW_MINUS] <= minus) {
 		return refuse(why, LW_REASON_SWITCH_MINUS_OUTSIDE, LW_ADDRESS_SWITCH_MINUS_UM,
@@ -267,8 +267,7 @@ static int check_motion(const struct lw_params *params, const struct lw_derived 
 
 	if (plus - minus <= clearance) {
 		return refuse(why, LW_REASON_SWITCHES_CROSSED, LW_ADDRESS_SWITCH_MINUS_UM,
-			      params->switch_minus_um,
-			      um_at_most(params, plus - clearance - 1));
+			      params->switch_minus_um, um_at_most(params, plus - clearance - 1));
 	}
 	if (plus - minus - clearance < 2 * ramp) {
 		const int32_t room = (plus - minus - clearance) / 2 - 2;
@@ -293,10 +292,10 @@ static int check_motion(const struct lw_params *params, const struct lw_derived 
 	    (derived->park_usteps + ramp > plus || derived->park_usteps - ramp < minus)) {
 		const bool above = derived->park_usteps + ramp > plus;
 
-		return refuse(
-			why, LW_REASON_PARK_OUTSIDE, LW_ADDRESS_PARK_POSITION_UM,
-			params->park_position_um,
-			above ? um_at_most(params, plus - ramp) : um_at_least(params, minus + ramp));
+		return refuse(why, LW_REASON_PARK_OUTSIDE, LW_ADDRESS_PARK_POSITION_UM,
+			      params->park_position_um,
+			      above ? um_at_most(params, plus - ramp)
+				    : um_at_least(params, minus + ramp));
 	}
 	if (derived->centre_usteps <= minus || derived->centre_usteps >= plus) {
 		return refuse(why, LW_REASON_CENTRE_OUTSIDE, LW_ADDRESS_CENTRE_POSITION_UM,
@@ -434,7 +433,7 @@ int lw_params_derive(const struct lw_params *params, struct lw_derived *derived,
 	return ret;
 }
 
-static int check_trimmed(const struct lw_params *params, const struct lw_derived *derived,
+int lw_params_check_trim(const struct lw_params *params, const struct lw_derived *derived,
 			 int32_t trim_plus_um, int32_t trim_minus_um, struct lw_refusal *why)
 {
 	struct lw_derived trimmed = *derived;
@@ -442,37 +441,6 @@ static int check_trimmed(const struct lw_params *params, const struct lw_derived
 	reversals(params, trim_plus_um, trim_minus_um, &trimmed.reversal_plus_usteps,
 		  &trimmed.reversal_minus_usteps);
 	return check_geometry(params, &trimmed, why);
-}
-
-int lw_params_check_trim(const struct lw_params *params, const struct lw_derived *derived,
-			 int32_t trim_plus_um, int32_t trim_minus_um, struct lw_refusal *why)
-{
-	struct lw_refusal ignored;
-
-	if (check_trimmed(params, derived, trim_plus_um, trim_minus_um, why) == 0) {
-		return 0;
-	}
-
-	/* The sides do not depend on each other: both switches lie between them. */
-	const bool plus = check_trimmed(params, derived, trim_plus_um, 0, &ignored) != 0;
-	const int32_t wanted_um = plus ? trim_plus_um : trim_minus_um;
-	int32_t good_um = 0;
-	int32_t bad_um = wanted_um;
-
-	while (bad_um - good_um > 1 || good_um - bad_um > 1) {
-		const int32_t between_um = (good_um + bad_um) / 2;
-
-		if (check_trimmed(params, derived, plus ? between_um : 0, plus ? 0 : between_um,
-				  &ignored)) {
-			bad_um = between_um;
-		} else {
-			good_um = between_um;
-		}
-	}
-	why->address = plus ? LW_ADDRESS_TRIM_PLUS_UM : LW_ADDRESS_TRIM_MINUS_UM;
-	why->value = wanted_um;
-	why->limit = good_um;
-	return -EINVAL;
 }
 
 struct lw_law_window lw_params_window(const struct lw_params *params,

@@ -1,0 +1,599 @@
+/* The whole controller as one object: parameter sets, commands, storage, registers, coils. */
+#include <errno.h>
+#include <string.h>
+
+#include <unity.h>
+
+#include "lw/crc16.h"
+#include "rig.h"
+
+static struct lw_refusal why;
+static const struct lw_device_config config = {.host = LW_HOST_SIMULATOR};
+
+static void power_up(const uint8_t *record, size_t length)
+{
+	const struct lw_inputs inputs = rig_inputs();
+
+	lw_device_init(&rig.device, &config, record, length, &inputs, rig.now_us, rig.now_us);
+	rig.controller = &rig.device.controller;
+	rig.with_device = true;
+	rig_ticks(300);
+}
+
+void setUp(void)
+{
+	rig_prepare(0);
+	power_up(NULL, 0);
+}
+
+void tearDown(void)
+{
+}
+
+static const struct lw_status *status(void)
+{
+	lw_device_refresh_status(&rig.device);
+	return &rig.device.status_image;
+}
+
+static bool flag(enum lw_flag bit)
+{
+	return status()->flags >> bit & 1;
+}
+
+static int write_register(uint16_t address, int32_t value)
+{
+	const uint8_t in[2] = {(uint8_t)((uint32_t)value >> 8), (uint8_t)value};
+
+	return lw_bank_write_registers(&rig.device.bank, address, 1, in, &why);
+}
+
+static int write_pair(uint16_t address, int32_t value)
+{
+	const uint8_t in[4] = {(uint8_t)((uint32_t)value >> 24), (uint8_t)((uint32_t)value >> 16),
+			       (uint8_t)((uint32_t)value >> 8), (uint8_t)value};
+
+	return lw_bank_write_registers(&rig.device.bank, address, 2, in, &why);
+}
+
+static int32_t read_register(enum lw_space space, uint16_t address)
+{
+	uint8_t out[2];
+
+	TEST_ASSERT_EQUAL_INT(
+		0, lw_bank_read_registers(&rig.device.bank, space, address, 1, out, &why));
+	return out[0] << 8 | out[1];
+}
+
+static int write_coil(uint16_t address, bool on)
+{
+	const uint8_t in = on;
+
+	return lw_bank_write_bits(&rig.device.bank, address, 1, &in, &why);
+}
+
+static bool read_bit(enum lw_space space, uint16_t address)
+{
+	uint8_t out;
+
+	TEST_ASSERT_EQUAL_INT(0,
+			      lw_bank_read_bits(&rig.device.bank, space, address, 1, &out, &why));
+	return out & 1;
+}
+
+static void assert_command(enum lw_command code, enum lw_result result, enum lw_reason reason)
+{
+	TEST_ASSERT_EQUAL_INT32(code, status()->command_code);
+	TEST_ASSERT_EQUAL_INT32(result, status()->command_result);
+	TEST_ASSERT_EQUAL_INT32(reason, status()->command_reason);
+}
+
+/** Give a command by its register; it is accepted and counted. */
+static void command(enum lw_command code)
+{
+	const int32_t sequence = status()->command_sequence;
+
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_COMMAND, (int32_t)code));
+	TEST_ASSERT_EQUAL_INT32(sequence + 1, status()->command_sequence);
+	TEST_ASSERT_EQUAL_INT32(code, read_register(LW_SPACE_HOLDING, LW_ADDRESS_COMMAND));
+}
+
+static void assert_command_refused(enum lw_command code, enum lw_reason reason)
+{
+	const int32_t sequence = status()->command_sequence;
+
+	TEST_ASSERT_EQUAL_INT(-EBUSY, write_register(LW_ADDRESS_COMMAND, (int32_t)code));
+	TEST_ASSERT_EQUAL_UINT16(reason, why.reason);
+	TEST_ASSERT_EQUAL_INT32(sequence + 1, status()->command_sequence);
+	assert_command(code, LW_RESULT_REFUSED, reason);
+}
+
+static void track(void)
+{
+	command(LW_COMMAND_INDEX);
+	rig_run_to(LW_STATE_TRACKING);
+}
+
+static void test_power_up_without_a_record(void)
+{
+	TEST_ASSERT_TRUE(flag(LW_FLAG_DEFAULTS_LOADED));
+	TEST_ASSERT_FALSE(flag(LW_FLAG_STAGED));
+	TEST_ASSERT_FALSE(flag(LW_FLAG_DIRTY));
+	TEST_ASSERT_FALSE(flag(LW_FLAG_RESTART_NEEDED));
+	assert_command(LW_COMMAND_NONE, LW_RESULT_NONE, LW_REASON_NONE);
+	TEST_ASSERT_EQUAL_INT32(LW_NO_ADDRESS, status()->command_address);
+	TEST_ASSERT_EQUAL_HEX32(0x12345678, status()->self_test);
+	TEST_ASSERT_EQUAL_INT32(LW_HOST_SIMULATOR, status()->host);
+	TEST_ASSERT_EQUAL_INT32(23, status()->ka);
+	TEST_ASSERT_EQUAL_INT32(8000, status()->reversal_plus_usteps);
+	TEST_ASSERT_EQUAL_INT32(-8000, status()->reversal_minus_usteps);
+}
+
+static void test_power_up_with_a_record(void)
+{
+	struct lw_params params = lw_params_default;
+	uint8_t record[LW_RECORD_SIZE];
+
+	params.unit_id = 17;
+	params.overshoot_um = 1000;
+	lw_record_encode(&params, record);
+	power_up(record, sizeof(record));
+	TEST_ASSERT_FALSE(flag(LW_FLAG_DEFAULTS_LOADED));
+	TEST_ASSERT_EQUAL_MEMORY(&params, &rig.device.active, sizeof(params));
+	TEST_ASSERT_EQUAL_MEMORY(&params, &rig.device.staged, sizeof(params));
+	TEST_ASSERT_EQUAL_MEMORY(&params, &rig.device.stored, sizeof(params));
+	TEST_ASSERT_EQUAL_UINT8(17, rig.device.slave_config.unit_id);
+
+	/* Damaged, and in itself contradictory: factory values. */
+	record[50] ^= 1;
+	power_up(record, sizeof(record));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_DEFAULTS_LOADED));
+	TEST_ASSERT_EQUAL_MEMORY(&lw_params_default, &rig.device.active, sizeof(params));
+	params.flange_plus_um = 0;
+	lw_record_encode(&params, record);
+	power_up(record, sizeof(record));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_DEFAULTS_LOADED));
+	TEST_ASSERT_EQUAL_MEMORY(&lw_params_default, &rig.device.active, sizeof(params));
+	TEST_ASSERT_EQUAL_INT32(23, status()->ka);
+}
+
+static void test_the_host_can_override_line_settings_and_add_registers(void)
+{
+	static const struct lw_point point = {.address = 61440, .count = 1, .type = LW_TYPE_U16};
+	static uint32_t value = 77;
+	const struct lw_bank_section section = {
+		.space = LW_SPACE_HOLDING,
+		.points = &point,
+		.point_count = 1,
+		.context = &value,
+		.image = rig.device.sections[5].image, /* hands out its context */
+	};
+	const struct lw_device_config other = {
+		.host = LW_HOST_QEMU, .host_section = &section, .silence_us = 16000, .unit_id = 9};
+	const struct lw_inputs inputs = rig_inputs();
+
+	lw_device_init(&rig.device, &other, NULL, 0, &inputs, 0, 0);
+	TEST_ASSERT_EQUAL_INT32(77, read_register(LW_SPACE_HOLDING, 61440));
+	TEST_ASSERT_EQUAL_UINT8(9, rig.device.slave_config.unit_id);
+	TEST_ASSERT_EQUAL_UINT32(16000, rig.device.slave_config.rtu.silence_us);
+}
+
+static void test_parameters_are_staged_then_applied(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_OVERSHOOT_UM, 1000));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_STAGED));
+	TEST_ASSERT_EQUAL_UINT32(2500, rig.device.active.overshoot_um);
+	TEST_ASSERT_EQUAL_INT32(1000, read_register(LW_SPACE_HOLDING, LW_ADDRESS_OVERSHOOT_UM + 1));
+	TEST_ASSERT_EQUAL_INT32(2500,
+				read_register(LW_SPACE_INPUT, LW_MAP_ACTIVE_ADDRESS_OFFSET +
+								      LW_ADDRESS_OVERSHOOT_UM + 1));
+	command(LW_COMMAND_APPLY);
+	assert_command(LW_COMMAND_APPLY, LW_RESULT_DONE, LW_REASON_NONE);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_STAGED));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_DIRTY));
+	TEST_ASSERT_EQUAL_UINT32(1000, rig.device.active.overshoot_um);
+	TEST_ASSERT_INT32_WITHIN(40, 1000, status()->overshoot_actual_um);
+	TEST_ASSERT_EQUAL_INT32(2500,
+				read_register(LW_SPACE_INPUT, LW_MAP_STORED_ADDRESS_OFFSET +
+								      LW_ADDRESS_OVERSHOOT_UM + 1));
+}
+
+static void test_apply_refused_says_why_and_changes_nothing(void)
+{
+	track();
+	rig_rest();
+	command(LW_COMMAND_STOP);
+	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_SWITCH_PLUS_UM, 81000));
+	command(LW_COMMAND_APPLY);
+	assert_command(LW_COMMAND_APPLY, LW_RESULT_REFUSED, LW_REASON_SWITCH_PLUS_OUTSIDE);
+	TEST_ASSERT_EQUAL_INT32(LW_ADDRESS_SWITCH_PLUS_UM, status()->command_address);
+	TEST_ASSERT_EQUAL_INT32(81000, status()->command_value);
+	TEST_ASSERT_EQUAL_INT32(80000, status()->command_limit);
+	TEST_ASSERT_EQUAL_MEMORY(&lw_params_default, &rig.device.active, sizeof(lw_params_default));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_STAGED));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_INDEXED));
+	command(LW_COMMAND_REVERT);
+	assert_command(LW_COMMAND_REVERT, LW_RESULT_DONE, LW_REASON_NONE);
+	TEST_ASSERT_EQUAL_INT32(LW_NO_ADDRESS, status()->command_address);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_STAGED));
+}
+
+static void test_apply_keeps_the_index_if_no_parameter_needs_it(void)
+{
+	track();
+	command(LW_COMMAND_STOP);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 300));
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_INDEXED));
+	TEST_ASSERT_EQUAL_INT32(LW_STATE_READY, status()->state);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_PLUS_UM, -100));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_SPAN_TOLERANCE_UM, 900));
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_INDEXED));
+	TEST_ASSERT_EQUAL_INT32(LW_STATE_UNINDEXED, status()->state);
+	TEST_ASSERT_EQUAL_INT32(0, read_register(LW_SPACE_HOLDING, LW_ADDRESS_TRIM_PLUS_UM));
+	rig_ticks(1000);
+	TEST_ASSERT_EQUAL_INT32(LW_STATE_UNINDEXED, status()->state);
+}
+
+static void test_apply_turns_the_encoder_without_a_false_edge(void)
+{
+	for (int bits = 0; bits < 4; bits++) {
+		setUp();
+		TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_ENCODER_INVERT_A, bits & 1));
+		TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_ENCODER_INVERT_B, bits >> 1));
+		command(LW_COMMAND_APPLY);
+		for (int i = 0; i < 40; i++) {
+			rig_transition(1);
+		}
+		TEST_ASSERT_EQUAL_INT64(bits == 0 || bits == 3 ? 20 : -20, status()->net_edges);
+		TEST_ASSERT_EQUAL_UINT32(0, status()->illegal_transitions);
+	}
+}
+
+static void test_apply_of_another_contact_type_sees_a_switch_that_is_held(void)
+{
+	/* An NC contact alone, opened: read as a pair, both are open. */
+	rig_set_switch(LW_PLUS, RIG_SWITCH_NO_OPEN);
+	rig.actuated[LW_PLUS] = true;
+	rig_tell_switch(LW_PLUS);
+	rig_ticks(100);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_SWITCH_PLUS));
+	rig.controller->limit[LW_PLUS].triggers = 12;
+	TEST_ASSERT_EQUAL_INT(
+		0, write_register(LW_ADDRESS_SWITCH_CONTACTS, LW_SWITCH_CONTACTS_SINGLE_NC));
+	command(LW_COMMAND_APPLY);
+	rig_ticks(100);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_SWITCH_PLUS));
+	TEST_ASSERT_FALSE(flag(LW_FLAG_SWITCH_MINUS));
+	TEST_ASSERT_EQUAL_UINT32(12, status()->switch_plus_triggers);
+}
+
+static void test_parameters_are_refused_while_tracking_and_commands_while_moving(void)
+{
+	static const enum lw_command commands[] = {
+		LW_COMMAND_APPLY,          LW_COMMAND_REVERT,       LW_COMMAND_SAVE,
+		LW_COMMAND_FACTORY_MOTION, LW_COMMAND_FACTORY_LINE, LW_COMMAND_FACTORY_ALL};
+
+	command(LW_COMMAND_INDEX);
+	rig_ticks(10);
+	for (int i = 0; i < 6; i++) {
+		assert_command_refused(commands[i], LW_REASON_BUSY_MOVING);
+	}
+	assert_command_refused(LW_COMMAND_INDEX, LW_REASON_BUSY_MOVING);
+	TEST_ASSERT_EQUAL_INT(-EBUSY, write_register(LW_ADDRESS_TRIM_PLUS_UM, -100));
+	TEST_ASSERT_EQUAL_UINT16(LW_REASON_BUSY_MOVING, why.reason);
+	/* What is unchanged may be written at any time. */
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_PLUS_UM, 0));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_MINUS_UM, 0));
+	rig_run_to(LW_STATE_TRACKING);
+	for (int i = 0; i < 6; i++) {
+		assert_command_refused(commands[i], LW_REASON_BUSY_TRACKING);
+	}
+	TEST_ASSERT_EQUAL_INT(-EBUSY, write_register(LW_ADDRESS_JOG_HOLD_MS, 300));
+	TEST_ASSERT_EQUAL_UINT16(LW_REASON_BUSY_TRACKING, why.reason);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_STAGED));
+}
+
+static void test_save_succeeds_fails_and_is_busy(void)
+{
+	struct lw_params read;
+
+	TEST_ASSERT_NULL(lw_device_pending_record(&rig.device));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 300));
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 350)); /* staged only */
+	command(LW_COMMAND_SAVE);
+	assert_command(LW_COMMAND_SAVE, LW_RESULT_IN_PROGRESS, LW_REASON_NONE);
+	TEST_ASSERT_TRUE(read_bit(LW_SPACE_COIL, LW_ADDRESS_SAVE));
+	TEST_ASSERT_NOT_NULL(lw_device_pending_record(&rig.device));
+	TEST_ASSERT_EQUAL_INT(
+		0, lw_record_decode(lw_device_pending_record(&rig.device), LW_RECORD_SIZE, &read));
+	TEST_ASSERT_EQUAL_MEMORY(&rig.device.active, &read, sizeof(read));
+	lw_device_record_written(&rig.device, -EIO);
+	assert_command(LW_COMMAND_SAVE, LW_RESULT_FAILED, LW_REASON_STORAGE_FAILED);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_DIRTY));
+	TEST_ASSERT_NULL(lw_device_pending_record(&rig.device));
+
+	command(LW_COMMAND_SAVE);
+	assert_command_refused(LW_COMMAND_SAVE, LW_REASON_BUSY_SAVING);
+	lw_device_record_written(&rig.device, 0);
+	/* The refusal came after: its account stays. */
+	assert_command(LW_COMMAND_SAVE, LW_RESULT_REFUSED, LW_REASON_BUSY_SAVING);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_DIRTY));
+
+	/* What is applied meanwhile is not what was saved. */
+	command(LW_COMMAND_SAVE);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 400));
+	command(LW_COMMAND_APPLY);
+	lw_device_record_written(&rig.device, 0);
+	assert_command(LW_COMMAND_APPLY, LW_RESULT_DONE, LW_REASON_NONE);
+	TEST_ASSERT_EQUAL_INT32(300, rig.device.stored.jog_hold_ms);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_DIRTY));
+	command(LW_COMMAND_SAVE);
+	lw_device_record_written(&rig.device, 0);
+	assert_command(LW_COMMAND_SAVE, LW_RESULT_DONE, LW_REASON_NONE);
+	TEST_ASSERT_FALSE(read_bit(LW_SPACE_COIL, LW_ADDRESS_SAVE));
+}
+
+static void test_factory_by_scope(void)
+{
+	static const struct {
+		enum lw_command code;
+		int32_t jog_hold_ms;
+		int32_t unit_id;
+	} scopes[] = {{LW_COMMAND_FACTORY_MOTION, 500, 5},
+		      {LW_COMMAND_FACTORY_LINE, 300, 1},
+		      {LW_COMMAND_FACTORY_ALL, 500, 1}};
+
+	for (int i = 0; i < 3; i++) {
+		setUp();
+		TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 300));
+		TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_UNIT_ID, 5));
+		command(LW_COMMAND_APPLY);
+		TEST_ASSERT_TRUE(flag(LW_FLAG_RESTART_NEEDED));
+		command(scopes[i].code);
+		TEST_ASSERT_EQUAL_INT32(scopes[i].jog_hold_ms, rig.device.staged.jog_hold_ms);
+		TEST_ASSERT_EQUAL_INT32(scopes[i].unit_id, rig.device.staged.unit_id);
+		TEST_ASSERT_EQUAL_INT32(300, rig.device.active.jog_hold_ms);
+	}
+	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_BAUD_RATE, 9600));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_UNIT_ID, 1));
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_RESTART_NEEDED));
+	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_BAUD_RATE, 19200));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_LINE_FORMAT, LW_LINE_FORMAT_8N1));
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_RESTART_NEEDED));
+}
+
+static void test_index_command_ends_done_faulted_or_stopped(void)
+{
+	assert_command(LW_COMMAND_NONE, LW_RESULT_NONE, LW_REASON_NONE);
+	command(LW_COMMAND_INDEX);
+	assert_command(LW_COMMAND_INDEX, LW_RESULT_IN_PROGRESS, LW_REASON_NONE);
+	TEST_ASSERT_TRUE(read_bit(LW_SPACE_COIL, LW_ADDRESS_INDEX));
+	rig_run_to(LW_STATE_TRACKING);
+	assert_command(LW_COMMAND_INDEX, LW_RESULT_DONE, LW_REASON_NONE);
+	TEST_ASSERT_FALSE(read_bit(LW_SPACE_COIL, LW_ADDRESS_INDEX));
+
+	rig_set_switch(LW_PLUS, RIG_SWITCH_NEVER);
+	command(LW_COMMAND_INDEX);
+	rig_run_to(LW_STATE_FAULT);
+	assert_command(LW_COMMAND_INDEX, LW_RESULT_FAILED, LW_REASON_FAULTED);
+
+	command(LW_COMMAND_CLEAR_FAULT);
+	assert_command(LW_COMMAND_CLEAR_FAULT, LW_RESULT_DONE, LW_REASON_NONE);
+	rig_place(0);
+	command(LW_COMMAND_INDEX);
+	rig_ticks(100);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_OFF));
+	rig_ticks(2);
+	assert_command(LW_COMMAND_INDEX, LW_RESULT_FAILED, LW_REASON_STOPPED);
+	assert_command_refused(LW_COMMAND_INDEX, LW_REASON_MODE_OFF);
+}
+
+static void test_index_is_refused_with_a_turning_drum_and_stop_never(void)
+{
+	rig.drum_edges_per_s = 3000;
+	rig_ticks(100);
+	assert_command_refused(LW_COMMAND_INDEX, LW_REASON_DRUM_MOVING);
+	command(LW_COMMAND_STOP);
+	assert_command(LW_COMMAND_STOP, LW_RESULT_DONE, LW_REASON_NONE);
+	lw_controller_overtravel(rig.controller, LW_PLUS, true);
+	rig_ticks(1);
+	assert_command_refused(LW_COMMAND_CLEAR_FAULT, LW_REASON_CAUSE_PRESENT);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_FAULTED));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_OVERTRAVEL_PLUS));
+}
+
+static void test_command_none_does_nothing(void)
+{
+	const int32_t sequence = status()->command_sequence;
+
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_COMMAND, LW_COMMAND_NONE));
+	TEST_ASSERT_EQUAL_INT32(sequence, status()->command_sequence);
+	TEST_ASSERT_EQUAL_INT(0, write_coil(LW_ADDRESS_INDEX, false));
+	TEST_ASSERT_EQUAL_INT32(sequence, status()->command_sequence);
+}
+
+static void test_coils_run_commands(void)
+{
+	static const struct {
+		uint16_t address;
+		enum lw_command code;
+	} coils[] = {{LW_ADDRESS_STOP, LW_COMMAND_STOP},
+		     {LW_ADDRESS_CLEAR_FAULT, LW_COMMAND_CLEAR_FAULT},
+		     {LW_ADDRESS_APPLY, LW_COMMAND_APPLY},
+		     {LW_ADDRESS_REVERT, LW_COMMAND_REVERT},
+		     {LW_ADDRESS_SAVE, LW_COMMAND_SAVE},
+		     {LW_ADDRESS_INDEX, LW_COMMAND_INDEX}};
+
+	for (size_t i = 0; i < sizeof(coils) / sizeof(coils[0]); i++) {
+		TEST_ASSERT_EQUAL_INT(0, write_coil(coils[i].address, true));
+		TEST_ASSERT_EQUAL_INT32(coils[i].code, status()->command_code);
+	}
+	TEST_ASSERT_EQUAL_INT(-EBUSY, write_coil(LW_ADDRESS_APPLY, true));
+	assert_command(LW_COMMAND_APPLY, LW_RESULT_REFUSED, LW_REASON_BUSY_MOVING);
+}
+
+static void test_jog_by_coil_and_by_register(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, write_coil(LW_ADDRESS_JOG_PLUS, true));
+	rig_ticks(100);
+	TEST_ASSERT_TRUE(read_bit(LW_SPACE_COIL, LW_ADDRESS_JOG_PLUS));
+	TEST_ASSERT_FALSE(read_bit(LW_SPACE_COIL, LW_ADDRESS_JOG_MINUS));
+	TEST_ASSERT_EQUAL_INT32(1, read_register(LW_SPACE_HOLDING, LW_ADDRESS_JOG));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_MOVING));
+	TEST_ASSERT_EQUAL_INT(0, write_coil(LW_ADDRESS_JOG_MINUS, false));
+	TEST_ASSERT_TRUE(read_bit(LW_SPACE_COIL, LW_ADDRESS_JOG_PLUS));
+	TEST_ASSERT_EQUAL_INT(-EBUSY, write_coil(LW_ADDRESS_JOG_MINUS, true));
+	TEST_ASSERT_EQUAL_INT(0, write_coil(LW_ADDRESS_JOG_PLUS, false));
+	TEST_ASSERT_FALSE(read_bit(LW_SPACE_COIL, LW_ADDRESS_JOG_PLUS));
+	TEST_ASSERT_EQUAL_INT32(0, read_register(LW_SPACE_HOLDING, LW_ADDRESS_JOG));
+	rig_run_to(LW_STATE_UNINDEXED);
+
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG, -1));
+	rig_ticks(10);
+	TEST_ASSERT_EQUAL_INT32(0xFFFF, read_register(LW_SPACE_HOLDING, LW_ADDRESS_JOG));
+	TEST_ASSERT_EQUAL_INT(-EBUSY, write_register(LW_ADDRESS_JOG, 1));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG, 0));
+	rig_run_to(LW_STATE_UNINDEXED);
+}
+
+static void test_mode_by_register(void)
+{
+	track();
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_CENTRE));
+	TEST_ASSERT_EQUAL_INT32(LW_MODE_CENTRE, read_register(LW_SPACE_HOLDING, LW_ADDRESS_MODE));
+	TEST_ASSERT_EQUAL_INT32(LW_MODE_TRACK, status()->active_mode);
+	rig_run_to(LW_STATE_CENTRED);
+	TEST_ASSERT_EQUAL_INT32(LW_MODE_CENTRE, status()->active_mode);
+}
+
+static void test_trim_by_register(void)
+{
+	track();
+	rig_drive(5000);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_PLUS_UM, -500));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_MINUS_UM, 300));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_TRIM_PENDING));
+	rig_drive(40);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_TRIM_PENDING));
+	TEST_ASSERT_EQUAL_INT32(7950, status()->reversal_plus_usteps);
+	TEST_ASSERT_EQUAL_INT32(-7970, status()->reversal_minus_usteps);
+	TEST_ASSERT_EQUAL_INT32(300, read_register(LW_SPACE_HOLDING, LW_ADDRESS_TRIM_MINUS_UM));
+
+	TEST_ASSERT_EQUAL_INT(-EINVAL, write_register(LW_ADDRESS_TRIM_PLUS_UM, 5000));
+	TEST_ASSERT_EQUAL_UINT16(LW_REASON_OVERSHOOT_BEYOND_FLANGE_PLUS, why.reason);
+	TEST_ASSERT_EQUAL_UINT16(LW_ADDRESS_TRIM_PLUS_UM, why.address);
+	TEST_ASSERT_EQUAL_INT32(5000, why.value);
+
+	/* The limit is the farthest that passes. */
+	const int32_t limit = why.limit;
+
+	TEST_ASSERT_EQUAL_INT(-EINVAL, write_register(LW_ADDRESS_TRIM_PLUS_UM, limit + 1));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_PLUS_UM, limit));
+	TEST_ASSERT_EQUAL_INT(-EINVAL, write_register(LW_ADDRESS_TRIM_MINUS_UM, 5000));
+	TEST_ASSERT_EQUAL_UINT16(LW_REASON_SWITCH_MINUS_OUTSIDE, why.reason);
+	TEST_ASSERT_EQUAL_INT(-EINVAL, write_register(LW_ADDRESS_TRIM_MINUS_UM, why.limit + 1));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_MINUS_UM, why.limit));
+}
+
+/** A request of the master: read one input register. Its answer comes when the frame has ended. */
+static void ask(uint64_t slave_now_us)
+{
+	uint8_t frame[8] = {1, 4, 0, 0, 0, 1};
+	uint8_t tx[LW_RTU_FRAME_MAX];
+	const uint16_t crc = lw_crc16(frame, 6);
+
+	frame[6] = (uint8_t)crc;
+	frame[7] = (uint8_t)(crc >> 8);
+	lw_slave_receive(&rig.device.slave, frame, sizeof(frame), slave_now_us);
+	TEST_ASSERT_EQUAL_UINT(
+		7, lw_slave_poll(&rig.device.slave, lw_slave_deadline_us(&rig.device.slave), tx));
+}
+
+static void test_master_lost(void)
+{
+	uint64_t slave_now_us = 100000000;
+
+	rig_ticks(2000);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_MASTER_LOST)); /* not watched */
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MASTER_TIMEOUT_MS, 1000));
+	command(LW_COMMAND_APPLY);
+	rig_ticks(1);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_MASTER_LOST));
+	TEST_ASSERT_EQUAL_INT32(1 << LW_LAUNCH_INHIBIT_MASTER_LOST |
+					1 << LW_LAUNCH_INHIBIT_NOT_TRACKING,
+				status()->launch_inhibit);
+	for (int i = 0; i < 5; i++) {
+		ask(slave_now_us);
+		slave_now_us += 1000000;
+		rig_ticks(1001);
+		TEST_ASSERT_FALSE(flag(LW_FLAG_MASTER_LOST));
+	}
+	rig_ticks(1);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_MASTER_LOST));
+	TEST_ASSERT_EQUAL_UINT32(5, status()->requests);
+}
+
+static void test_status_while_tracking(void)
+{
+	track();
+	TEST_ASSERT_TRUE(flag(LW_FLAG_LAUNCH_PERMIT));
+	rig.drum_edges_per_s = 53000;
+	rig_ticks(100);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_OVERSPEED_WARNING));
+	TEST_ASSERT_EQUAL_INT32(53000, status()->drum_speed_edges_per_s);
+	TEST_ASSERT_INT32_WITHIN(1, 53000 * 2400 / 2880, status()->rope_speed_mm_per_s);
+	rig.drum_edges_per_s = -53000;
+	rig_ticks(200);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_OVERSPEED_WARNING));
+	TEST_ASSERT_INT32_WITHIN(1, -53000 * 2400 / 2880, status()->rope_speed_mm_per_s);
+	rig.drum_edges_per_s = -20000;
+	rig_ticks(100);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_OVERSPEED_WARNING));
+	TEST_ASSERT_EQUAL_INT32(status()->net_edges * 2400 / 2880, status()->rope_mm);
+	TEST_ASSERT_EQUAL_INT64(status()->net_edges, status()->pattern_edges);
+	TEST_ASSERT_INT32_WITHIN(5, rig.carriage_usteps * 10, status()->position_um);
+	TEST_ASSERT_TRUE(read_bit(LW_SPACE_DISCRETE, LW_FLAG_TRACKING));
+	TEST_ASSERT_EQUAL_UINT32(rig.now_us / 1000, status()->uptime_ms);
+}
+
+static void test_the_odometer_saturates(void)
+{
+	rig.controller->motion.net_edges = INT64_MAX / 2;
+	TEST_ASSERT_EQUAL_INT32(INT32_MAX, status()->rope_mm);
+	rig.controller->motion.net_edges = -(INT64_MAX / 2);
+	TEST_ASSERT_EQUAL_INT32(INT32_MIN, status()->rope_mm);
+	rig.controller->motion.net_edges = -2880;
+	TEST_ASSERT_EQUAL_INT32(-2400, status()->rope_mm);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_power_up_without_a_record);
+	RUN_TEST(test_power_up_with_a_record);
+	RUN_TEST(test_the_host_can_override_line_settings_and_add_registers);
+	RUN_TEST(test_parameters_are_staged_then_applied);
+	RUN_TEST(test_apply_refused_says_why_and_changes_nothing);
+	RUN_TEST(test_apply_keeps_the_index_if_no_parameter_needs_it);
+	RUN_TEST(test_apply_turns_the_encoder_without_a_false_edge);
+	RUN_TEST(test_apply_of_another_contact_type_sees_a_switch_that_is_held);
+	RUN_TEST(test_parameters_are_refused_while_tracking_and_commands_while_moving);
+	RUN_TEST(test_save_succeeds_fails_and_is_busy);
+	RUN_TEST(test_factory_by_scope);
+	RUN_TEST(test_index_command_ends_done_faulted_or_stopped);
+	RUN_TEST(test_index_is_refused_with_a_turning_drum_and_stop_never);
+	RUN_TEST(test_command_none_does_nothing);
+	RUN_TEST(test_coils_run_commands);
+	RUN_TEST(test_jog_by_coil_and_by_register);
+	RUN_TEST(test_mode_by_register);
+	RUN_TEST(test_trim_by_register);
+	RUN_TEST(test_master_lost);
+	RUN_TEST(test_status_while_tracking);
+	RUN_TEST(test_the_odometer_saturates);
+	return UNITY_END();
+}
