@@ -53,7 +53,7 @@ class Truth(ctypes.Structure):
     )
 
 
-class Refused(Exception):
+class RequestRefusedError(Exception):
     """The controller answered a Modbus exception."""
 
     def __init__(self, exception: int, reason: Reason) -> None:
@@ -146,7 +146,7 @@ class World:
     def _checked(self, pdu: bytes) -> bytes:
         answer = self.request(pdu)
         if answer[0] & 0x80:
-            raise Refused(answer[1], Reason(self.value("last_error_reason")))
+            raise RequestRefusedError(answer[1], Reason(self.value("last_error_reason")))
         return answer
 
     def read(self, *names: str) -> dict[str, int]:
@@ -163,7 +163,7 @@ class World:
         return self.read(name)[name]
 
     def write(self, **values: int) -> None:
-        """Write holding registers by name; raises Refused."""
+        """Write holding registers by name; raises RequestRefusedError."""
         for run in runs((POINTS[name] for name in values), REGISTERS_MAX):
             words = [word for point in run.points for word in encode(point, values[point.name])]
             head = struct.pack(">BHHB", 16, run.address, run.count, 2 * run.count)
@@ -193,7 +193,7 @@ class World:
         return "launch_permit" in self.flags
 
     def command(self, command: Command, limit_s: float = 60.0) -> Result:
-        """Give a command, wait for its end. Raises Refused where the request itself is refused."""
+        """Give a command and wait for its end; RequestRefusedError if it is not taken at all."""
         self.write(command=command)
         self.run_until(lambda: self.value("command_result") != Result.IN_PROGRESS, limit_s, 0.01)
         return Result(self.value("command_result"))

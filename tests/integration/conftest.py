@@ -1,7 +1,7 @@
 """The integration suite talks Modbus to a running slave, whichever it is.
 
-    --target sim                 starts the simulator (default)
-    --target serial:/dev/ttyX    a slave that is there already; it must have the bench block
+--target sim                 starts the simulator (default)
+--target serial:/dev/ttyX    a slave that is there already; it must have the bench block
 """
 
 from collections.abc import Callable, Iterator
@@ -21,14 +21,15 @@ def target(request: pytest.FixtureRequest) -> str:
 
 
 @pytest.fixture(scope="module")
-def simulator(
-    target: str, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Simulator | None]:
+def simulator(target: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulator | None]:
     if target != "sim":
         yield None
         return
     running = start_simulator(
-        tmp_path_factory.mktemp("sim"), "--speed", "10", "--storage",
+        tmp_path_factory.mktemp("sim"),
+        "--speed",
+        "10",
+        "--storage",
         str(tmp_path_factory.mktemp("storage") / "parameters.bin"),
     )
     yield running

@@ -65,16 +65,16 @@ class Slave:
         }[space]
         answer = function(point.address + offset, count=point.words, device_id=UNIT)
         assert not answer.isError(), f"{name}: {answer}"
-        value = int.from_bytes(b"".join(word.to_bytes(2, "big") for word in answer.registers), "big")
+        value = int.from_bytes(
+            b"".join(word.to_bytes(2, "big") for word in answer.registers), "big"
+        )
         bits = 16 * point.words
         return value - (1 << bits) if point.type.startswith("i") and value >> (bits - 1) else value
 
     def write(self, name: str, value: int, *, function: int | None = None) -> int:
         """Write one value; the exception code, 0 if it was taken."""
         point = POINTS[name]
-        words = [
-            (value >> (16 * (point.words - 1 - i))) & 0xFFFF for i in range(point.words)
-        ]
+        words = [(value >> (16 * (point.words - 1 - i))) & 0xFFFF for i in range(point.words)]
         if function == 6 or (function is None and point.words == 1):
             answer = self.client.write_register(point.address, words[0], device_id=UNIT)
         else:

@@ -1,4 +1,4 @@
-"""The worked examples of doc/integration.md, byte by byte, against a slave that was just switched on."""
+"""The worked examples of doc/integration.md against a slave that was just switched on."""
 
 import re
 from collections.abc import Callable

@@ -4,6 +4,7 @@ import pytest
 from levelwind.map_table import POINTS, PRODUCT_CODE, PRODUCT_NAME, PRODUCT_VERSION, VENDOR, Reason
 from slave import RawLine, Slave, sealed
 
+SUPPORTED = {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43}
 READ_SELF_TEST = bytes.fromhex("04 0000 0002")
 SELF_TEST_ANSWER = bytes.fromhex("04 04 12345678")
 
@@ -27,7 +28,9 @@ def test_wrong_crc_other_unit_and_noise_stay_unanswered(slave: Slave, raw: RawLi
     assert slave.read("crc_errors") == errors + 3
 
 
-@pytest.mark.parametrize("function", sorted(set(range(1, 128)) - {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43}))
+@pytest.mark.parametrize(
+    "function", sorted(set(range(1, 128)) - {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43})
+)
 def test_unknown_functions(raw: RawLine, function: int) -> None:
     assert raw.request(bytes([function, 0, 0, 0, 1])) == bytes([function | 0x80, 1])
 
@@ -94,7 +97,9 @@ def test_mask_write(slave: Slave, raw: RawLine) -> None:
 
 
 def test_read_write_writes_first(slave: Slave, raw: RawLine) -> None:
-    assert raw.request(bytes.fromhex("17 0064 0001 0064 0001 02 0123")) == bytes.fromhex("17 02 0123")
+    assert raw.request(bytes.fromhex("17 0064 0001 0064 0001 02 0123")) == bytes.fromhex(
+        "17 02 0123"
+    )
     assert slave.read("encoder_pulses_per_rev") == 0x123
 
 

@@ -1,6 +1,16 @@
 """The life of the controller over the line: indexing, tracking, losing synchronization, modes."""
 
-from levelwind.map_table import BenchCommand, Command, Fault, Flag, LaunchInhibit, Mode, Reason, Result, State
+from levelwind.map_table import (
+    BenchCommand,
+    Command,
+    Fault,
+    Flag,
+    LaunchInhibit,
+    Mode,
+    Reason,
+    Result,
+    State,
+)
 from slave import Slave
 
 

@@ -22,10 +22,12 @@ REGISTERS = [
 ]
 
 
-def mbpoll(port: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+MBPOLL = ["mbpoll", "-m", "rtu", "-a", str(UNIT), "-b", "19200", "-P", "none", "-0", "-1", "-q"]
+
+
+def mbpoll(port: str, *options: str, write: str = "") -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        ["mbpoll", "-m", "rtu", "-a", str(UNIT), "-b", "19200", "-P", "none", "-0", "-1", "-q"]
-        + ["-o", "2", *arguments[:-1], port, *arguments[-1].split()],
+        [*MBPOLL, "-o", "2", *options, port, *write.split()],
         capture_output=True,
         text=True,
         timeout=20,
@@ -36,8 +38,8 @@ def mbpoll(port: str, *arguments: str) -> subprocess.CompletedProcess[str]:
 def mbpoll_read(port: str, name: str) -> int:
     point = POINTS[name]
     kind = {"input": "3", "holding": "4"}[point.space]
-    wide = [":int", "-B"] if point.words == 2 else []
-    answer = mbpoll(port, "-t", kind + (wide[0] if wide else ""), *wide[1:], "-r", str(point.address), "")
+    options = ["-t", f"{kind}:int", "-B"] if point.words == 2 else ["-t", kind]
+    answer = mbpoll(port, *options, "-r", str(point.address))
     assert answer.returncode == 0, answer.stdout + answer.stderr
     match = re.search(rf"\[{point.address}\]:\s+(-?\d+)(?: \((-\d+)\))?", answer.stdout)
     assert match, answer.stdout
@@ -56,12 +58,12 @@ def test_mbpoll_and_pymodbus_agree(slave: Slave, name: str) -> None:
 def test_mbpoll_changes_a_parameter_and_is_refused(slave: Slave) -> None:
     slave.close()
     address = str(POINTS["encoder_pulses_per_rev"].address)
-    good = mbpoll(slave.port, "-t", "4", "-r", address, "500")
+    good = mbpoll(slave.port, "-t", "4", "-r", address, write="500")
     assert good.returncode == 0, good.stdout + good.stderr
-    bad = mbpoll(slave.port, "-t", "4", "-r", address, "0")
+    bad = mbpoll(slave.port, "-t", "4", "-r", address, write="0")
     assert bad.returncode != 0
     assert "Illegal data value" in bad.stdout + bad.stderr
-    missing = mbpoll(slave.port, "-t", "4", "-r", "50", "1")
+    missing = mbpoll(slave.port, "-t", "4", "-r", "50", write="1")
     assert "Illegal data address" in missing.stdout + missing.stderr
     again = Slave(slave.port)
     assert again.read("encoder_pulses_per_rev") == 500

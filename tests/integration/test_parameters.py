@@ -87,9 +87,7 @@ def test_parameters_are_refused_while_tracking(slave: Slave) -> None:
     assert slave.read("pitch_um") == 12_000
 
 
-def test_save_survives_a_kill(
-    own_simulator: Callable[..., Simulator], tmp_path: Path
-) -> None:
+def test_save_survives_a_kill(own_simulator: Callable[..., Simulator], tmp_path: Path) -> None:
     storage = tmp_path / "parameters.bin"
     first = own_simulator(tmp_path, "--storage", str(storage))
     slave = Slave(str(first.port))
@@ -112,9 +110,7 @@ def test_save_survives_a_kill(
     assert second.stop() == 0
 
 
-def test_save_that_fails_says_so(
-    own_simulator: Callable[..., Simulator], tmp_path: Path
-) -> None:
+def test_save_that_fails_says_so(own_simulator: Callable[..., Simulator], tmp_path: Path) -> None:
     running = own_simulator(tmp_path, "--storage", str(tmp_path / "missing" / "parameters.bin"))
     slave = Slave(str(running.port))
     assert slave.command(Command.SAVE) == Result.FAILED

@@ -168,7 +168,7 @@ def test_p7_no_drift_after_200_million_edges(pattern: Pattern):
         assert (result.m, result.u) == (expected.m, expected.u)
 
 
-# ---- from parameters to the law --------------------------------------------------------------------
+# ---- from parameters to the law ----------------------------------------------------------------
 
 DEFAULTS = {point.name: point.default for point in PARAMETERS}
 

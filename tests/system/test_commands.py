@@ -1,10 +1,10 @@
-"""Every command in every state: taken, or refused with a reason. Never a permit without an index."""
+"""Every command in every state: taken, or refused with a reason; no permit without an index."""
 
 from collections.abc import Callable
 
 import pytest
 from levelwind.map_table import Command, Mode, Reason, State
-from world import Refused, World
+from world import RequestRefusedError, World
 
 MOVING = {
     *(State.BACKING_OFF, State.SEEKING, State.INDEX_REVERSAL, State.SPAN_CHECK, State.PARKING),
@@ -110,48 +110,56 @@ STATES: dict[str, tuple[State, Callable[[], World]]] = {
 }
 
 
-def expected_refusal(name: str, state: State, write: dict[str, int]) -> Reason | None:
+def busy(state: State) -> Reason | None:
+    """Why what needs a standing carriage is refused."""
+    if state == State.TRACKING:
+        return Reason.BUSY_TRACKING
+    return Reason.BUSY_MOVING if state in MOVING else None
+
+
+def jog_refusal(name: str, state: State, direction: int) -> Reason | None:
+    """A jog may be held on, ended, and begun where nothing else moves the carriage."""
+    if direction == 0 or (state == State.JOGGING and direction > 0) or name == "tracking":
+        return None
+    if name == "fault" and direction > 0:
+        return Reason.OVERTRAVEL
+    return Reason.MODE_OFF if state == State.OFF else busy(state)
+
+
+def command_refusal(name: str, state: State, command: int) -> Reason | None:
+    """Stop is never refused; sets change at rest; indexing needs current and a resting drum."""
+    if command in SET_COMMANDS:
+        return busy(state)
+    if command == Command.CLEAR_FAULT and name == "fault":
+        return Reason.CAUSE_PRESENT
+    if command != Command.INDEX:
+        return None
+    if state == State.OFF:
+        return Reason.MODE_OFF
+    if state in MOVING:
+        return Reason.BUSY_MOVING
+    return Reason.DRUM_MOVING if name.endswith("turning") else None
+
+
+def expected_refusal(name: str, state: State, register: str, value: int) -> Reason | None:
     """Why a write must be refused here; None if it must be taken."""
-    ((register, value),) = write.items()
-    busy = (
-        Reason.BUSY_TRACKING
-        if state == State.TRACKING
-        else Reason.BUSY_MOVING
-        if state in MOVING
-        else None
-    )
-    if register == "jog" and value != 0:
-        if name == "fault" and value > 0:
-            return Reason.OVERTRAVEL
-        if state == State.JOGGING:
-            return None if value > 0 else Reason.BUSY_MOVING
-        if state == State.OFF:
-            return Reason.MODE_OFF
-        return busy if name != "tracking" else None
+    if register == "jog":
+        return jog_refusal(name, state, value)
+    if register == "command":
+        return command_refusal(name, state, value)
     if register == "pitch_um":
         return Reason.BUSY_TRACKING if state == State.TRACKING else None
     if register == "trim_plus_um":
         return Reason.BUSY_MOVING if state in MOVING else None
-    if register == "command":
-        if value in SET_COMMANDS:
-            return busy
-        if value == Command.INDEX:
-            if state == State.OFF:
-                return Reason.MODE_OFF
-            if state in MOVING:
-                return Reason.BUSY_MOVING
-            return Reason.DRUM_MOVING if name.endswith("turning") else None
-        if value == Command.CLEAR_FAULT:
-            return Reason.CAUSE_PRESENT if name == "fault" else None
     return None
 
 
 WRITES = [
-    *({"command": command} for command in Command),
-    *({"mode": mode} for mode in Mode),
-    *({"jog": direction} for direction in (-1, 0, 1)),
-    {"pitch_um": 11_000},
-    {"trim_plus_um": -500},
+    *(("command", command) for command in Command),
+    *(("mode", mode) for mode in Mode),
+    *(("jog", direction) for direction in (-1, 0, 1)),
+    ("pitch_um", 11_000),
+    ("trim_plus_um", -500),
 ]
 
 
@@ -166,25 +174,25 @@ def check_permit(world: World) -> None:
 @pytest.mark.parametrize("name", STATES)
 def test_every_command(name: str):
     state, make = STATES[name]
-    for write in WRITES:
+    for register, value in WRITES:
         world = make()
         assert world.state == state
         indexed = "indexed" in world.flags
         before = world.read("command_sequence", "steps")
-        expected = expected_refusal(name, state, write)
+        expected = expected_refusal(name, state, register, value)
         try:
-            world.write(**write)
+            world.write(**{register: value})
             refused = None
-        except Refused as refusal:
-            assert refusal.exception == 6, f"{write}: {refusal}"
+        except RequestRefusedError as refusal:
+            assert refusal.exception == 6, f"{register} {value}: {refusal}"
             refused = refusal.reason
-        assert refused == expected, f"{write}"
+        assert refused == expected, f"{register} {value}"
         if expected is not None:
             assert world.state == state
             assert ("indexed" in world.flags) == indexed
-        if "command" in write and write["command"] != Command.NONE:
+        if register == "command" and value != Command.NONE:
             assert world.value("command_sequence") == before["command_sequence"] + 1
-            assert world.value("command_code") == write["command"]
+            assert world.value("command_code") == value
         for _ in range(40):
             world.run(0.05)
             check_permit(world)

@@ -13,7 +13,7 @@ from levelwind.map_table import (
     Side,
     State,
 )
-from world import USTEP, PlantFault, Refused, World
+from world import USTEP, PlantFault, RequestRefusedError, World
 
 # ---- hand-over and modes -----------------------------------------------------------------------
 
@@ -98,7 +98,7 @@ def test_mode_off_takes_the_current_and_the_index():
     steps = world.value("steps")
     world.stop_drum()
     assert world.value("steps") == steps
-    with pytest.raises(Refused, match="06, mode_off"):
+    with pytest.raises(RequestRefusedError, match="06, mode_off"):
         world.command(Command.INDEX)
     world.mode(Mode.TRACK)
     world.run(0.01)
@@ -143,12 +143,12 @@ def test_jog_ends_at_the_reversal_points_and_keeps_the_index(direction: int):
 @pytest.mark.parametrize("direction", [1, -1])
 def test_jog_without_index_ends_at_the_switch(direction: int):
     world = World(1, 40_000 * direction)
-    with pytest.raises(Refused, match="06"):
+    with pytest.raises(RequestRefusedError, match="06"):
         hold_jog(world, direction, 4.0)  # time enough to the end stop
     world.run(0.5)
     assert world.state == State.UNINDEXED
     assert 78_400 <= abs(world.truth.carriage_um) < 82_000
-    with pytest.raises(Refused, match="06, overtravel"):
+    with pytest.raises(RequestRefusedError, match="06, overtravel"):
         world.write(jog=direction)
     hold_jog(world, -direction, 1.0)
     assert abs(world.truth.carriage_um) < 77_000
@@ -199,9 +199,9 @@ def test_trim_moves_the_reversals_and_only_in_the_sweep():
     assert farthest_um(world, 5.0) == pytest.approx((-80_000 - 2_470, 80_000 + 2_470), abs=25)
     assert abs(world.error_usteps) < 20
 
-    with pytest.raises(Refused, match="03, overshoot_beyond_flange_plus"):
-        world.write(trim_plus_um=500)
-    with pytest.raises(Refused, match="03, switch_plus_outside"):
+    with pytest.raises(RequestRefusedError, match="03, overshoot_beyond_flange_plus"):
+        world.write(trim_plus_um=800)
+    with pytest.raises(RequestRefusedError, match="03, switch_plus_outside"):
         world.write(trim_plus_um=-1600)
 
 
@@ -258,9 +258,9 @@ def test_overtravel_in_a_launch(side: str, sign: int, drum: int):
     assert world.value("steps") == steps  # blocked in the interrupt, not by the next tick
     assert world.flags.isdisjoint({"stepper_enabled", "launch_permit", "indexed"})
     world.stop_drum()
-    with pytest.raises(Refused, match="06, cause_present"):
+    with pytest.raises(RequestRefusedError, match="06, cause_present"):
         world.command(Command.CLEAR_FAULT)
-    with pytest.raises(Refused, match="06, overtravel"):
+    with pytest.raises(RequestRefusedError, match="06, overtravel"):
         world.write(jog=sign)
     assert world.value("steps") == steps
 
@@ -270,7 +270,7 @@ def test_out_of_overtravel_by_jogging(side: str, sign: int):
     world = World(1, sign * 87_500)
     world.run(0.1)
     assert world.fault == Fault[f"OVERTRAVEL_{side.upper()}"]
-    with pytest.raises(Refused, match="06, overtravel"):
+    with pytest.raises(RequestRefusedError, match="06, overtravel"):
         world.write(jog=sign)
     hold_jog(world, -sign, 1.0)
     world.write(jog=0)
@@ -376,7 +376,7 @@ def test_power_cut_in_a_launch():
     world.run(1.0)
     assert world.state == State.UNINDEXED
     assert world.value("steps") == 0
-    with pytest.raises(Refused) as refused:
+    with pytest.raises(RequestRefusedError) as refused:
         world.command(Command.INDEX)
     assert refused.value.reason == Reason.DRUM_MOVING
     assert world.value("net_edges") * USTEP > 0

@@ -14,6 +14,8 @@ static struct lw_refusal why;
 void setUp(void)
 {
 	params = lw_params_default;
+	params.flange_plus_um = 82500; /* close to the overshoot, to come to its rule easily */
+	params.flange_minus_um = -82500;
 	memset(&derived, 0x55, sizeof(derived));
 	memset(&why, 0xAA, sizeof(why));
 }
@@ -373,17 +375,27 @@ static void test_reason_too_few_edges(void)
 
 static void test_reason_debounce_too_long(void)
 {
-	for (int side = 0; side < 2; side++) {
-		setUp();
-		params.index_switch = side;
-		params.switch_contacts = LW_SWITCH_CONTACTS_SINGLE_NC;
-		params.switch_debounce_ms = 100;
-		/* 160 microsteps at 10,000 edges/s * 0.4166: 38.4 ms. */
-		assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 100, 38);
-		assert_limit_is_the_border(&params.switch_debounce_ms, 0, 1);
-		params.switch_contacts = LW_SWITCH_CONTACTS_NO_NC_PAIR;
-		assert_accepted();
-	}
+	params.switch_contacts = LW_SWITCH_CONTACTS_SINGLE_NC;
+	params.switch_debounce_ms = 100;
+	/* 160 microsteps at 52,000 edges/s * 0.4166: 7.4 ms. */
+	assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 100, 7);
+	assert_limit_is_the_border(&params.switch_debounce_ms, 0, 1);
+
+	/* The side with less room counts, whichever it is: 80 microsteps. */
+	params.switch_debounce_ms = 100;
+	params.switch_minus_um = -79200;
+	assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 100, 3);
+	params.switch_minus_um = -78400;
+	params.switch_plus_um = 79200;
+	assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 100, 3);
+	params.switch_plus_um = 78400;
+
+	/* A faster index rate counts too: 38.4 ms at 10,000 edges/s. */
+	params.overspeed_warning_edges_per_s = 5000;
+	assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 100, 38);
+
+	params.switch_contacts = LW_SWITCH_CONTACTS_NO_NC_PAIR;
+	assert_accepted();
 }
 
 static void test_trim_is_checked_by_the_same_rules(void)
@@ -426,13 +438,15 @@ static void test_configurations_of_the_layers_below(void)
 
 static void test_need_index_by_the_flag_of_each_register(void)
 {
-	TEST_ASSERT_FALSE(lw_params_need_index(&lw_params_default, &params));
+	const struct lw_params before = params;
+
+	TEST_ASSERT_FALSE(lw_params_need_index(&before, &params));
 	for (size_t i = 0; i < LW_MAP_PARAMS_COUNT; i++) {
 		int32_t *value = (int32_t *)(void *)((char *)&params + lw_map_params[i].offset);
 
 		*value += 1;
 		TEST_ASSERT_EQUAL((lw_map_params[i].flags & LW_POINT_REINDEX) != 0,
-				  lw_params_need_index(&lw_params_default, &params));
+				  lw_params_need_index(&before, &params));
 		*value -= 1;
 	}
 }

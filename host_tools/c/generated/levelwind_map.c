@@ -155,7 +155,7 @@ static const struct levelwind_value reason_values[] = {
 		39, "park_outside",
 		"The parking place needs its last reversal (plus overshoot) inside the sweep",
 	},
-	{40, "centre_outside", "centre_position must lie inside the reversal points"},
+	{40, "centre_outside", "centre_position must lie between the limit switches"},
 	{
 		41, "ramp_does_not_fit",
 		"Two ramps of one overshoot each must fit between the switches, less tolerance and hysteresis",
@@ -173,7 +173,7 @@ static const struct levelwind_value reason_values[] = {
 	{46, "too_few_edges", "The encoder ratio gives less than one edge per drum revolution"},
 	{
 		47, "debounce_too_long",
-		"At the index rate the carriage would pass the reversal point before the switch is debounced",
+		"At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced",
 	},
 };
 
@@ -321,7 +321,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "encoder_ratio_numerator", .unit = "",
 		.text = "Encoder revolutions per drum revolution, numerator",
 		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 102,
-		.words = 1, .min = 1, .max = 1000, .default_value = 4,
+		.words = 1, .min = 1, .max = 100, .default_value = 4,
 	},
 	{
 		.name = "encoder_ratio_denominator", .unit = "",

@@ -53,7 +53,7 @@ const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT] = {
 	{
 		.address = 102, .count = 1,
 		.offset = offsetof(struct lw_params, encoder_ratio_numerator), .type = LW_TYPE_U16,
-		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1, .max = 1000,
+		.flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 1, .max = 100,
 		.default_value = 4,
 	},
 	{

@@ -114,8 +114,7 @@ static void judge_reversal(struct lw_controller *controller, int side)
 		}
 	}
 	/* Before its correction the position says nothing about where a switch is. */
-	if (!(motion->requests & LW_MOTION_REQUEST_CORRECTION) &&
-	    surely_inward(controller, side)) {
+	if (!(motion->requests & LW_MOTION_REQUEST_CORRECTION) && surely_inward(controller, side)) {
 		controller->seen[side] = false;
 	}
 }

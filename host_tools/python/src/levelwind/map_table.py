@@ -233,7 +233,7 @@ class Reason(MapEnum):
         "park_outside",
         "The parking place needs its last reversal (plus overshoot) inside the sweep",
     )
-    CENTRE_OUTSIDE = 40, "centre_outside", "centre_position must lie inside the reversal points"
+    CENTRE_OUTSIDE = 40, "centre_outside", "centre_position must lie between the limit switches"
     RAMP_DOES_NOT_FIT = (
         41,
         "ramp_does_not_fit",
@@ -267,7 +267,7 @@ class Reason(MapEnum):
     DEBOUNCE_TOO_LONG = (
         47,
         "debounce_too_long",
-        "At the index rate the carriage would pass the reversal point before the switch is debounced",
+        "At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced",
     )
 
 
@@ -901,7 +901,7 @@ POINTS: dict[str, Point] = {
             text="Encoder revolutions per drum revolution, numerator",
             block="parameters",
             min=1,
-            max=1000,
+            max=100,
             default=4,
             scope="motion",
             writable=True,

@@ -218,7 +218,7 @@ enum lw_reason {
 	LW_REASON_OVERSHOOT_BEYOND_FLANGE_MINUS = 38,
 	/** The parking place needs its last reversal (plus overshoot) inside the sweep */
 	LW_REASON_PARK_OUTSIDE = 39,
-	/** centre_position must lie inside the reversal points */
+	/** centre_position must lie between the limit switches */
 	LW_REASON_CENTRE_OUTSIDE = 40,
 	/**
 	 * Two ramps of one overshoot each must fit between the switches, less tolerance and
@@ -239,8 +239,8 @@ enum lw_reason {
 	/** The encoder ratio gives less than one edge per drum revolution */
 	LW_REASON_TOO_FEW_EDGES = 46,
 	/**
-	 * At the index rate the carriage would pass the reversal point before the switch is
-	 * debounced
+	 * At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the
+	 * reversal point before the switch is debounced
 	 */
 	LW_REASON_DEBOUNCE_TOO_LONG = 47,
 };
