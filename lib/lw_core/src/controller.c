@@ -103,15 +103,18 @@ void lw_controller_configure(struct lw_controller *controller, const struct lw_p
 			     const struct lw_derived *derived, bool need_index)
 {
 	const struct lw_quadrature_config old = controller->quadrature_config;
+	uint8_t inverted;
 
 	controller->params = params;
 	controller->derived = derived;
 	controller->limit_config = lw_params_limit_switch(params);
 	controller->quadrature_config = lw_params_quadrature(params);
-	/* The levels keep their meaning under a changed inversion. */
-	controller->quadrature.levels ^=
-		(uint8_t)(((old.invert_a != controller->quadrature_config.invert_a) << 1) |
-			  (old.invert_b != controller->quadrature_config.invert_b));
+	inverted = (uint8_t)(((old.invert_a != controller->quadrature_config.invert_a) << 1) |
+			     (old.invert_b != controller->quadrature_config.invert_b));
+	if (inverted != 0) {
+		/* The levels keep their meaning. Otherwise they are the interrupt's alone. */
+		controller->quadrature.levels ^= inverted;
+	}
 	if (!need_index) {
 		return;
 	}
@@ -406,7 +409,7 @@ void lw_controller_set_trim(struct lw_controller *controller, int32_t trim_plus_
 /** Measure the drum speed over the last LW_CONTROLLER_SPEED_TICKS ticks, and whether it rests. */
 static void measure_speed(struct lw_controller *controller, uint64_t now_us)
 {
-	const int64_t edges = controller->motion.net_edges;
+	const int64_t edges = lw_motion_read(&controller->motion).net_edges;
 	int64_t *oldest = &controller->edge_history[controller->edge_history_next];
 	const int64_t speed =
 		(edges - *oldest) * 1000000 / (LW_CONTROLLER_SPEED_TICKS * LW_CONTROLLER_TICK_US);

@@ -71,6 +71,7 @@ void lw_device_refresh_status(struct lw_device *device)
 {
 	const struct lw_controller *controller = &device->controller;
 	const struct lw_motion *motion = &controller->motion;
+	const struct lw_motion_reading reading = lw_motion_read(motion);
 	const struct lw_derived *derived = &device->derived;
 	const struct lw_last_error *error = &device->slave.pdu.last_error;
 	const struct lw_los_record *los1 = controller->los1;
@@ -96,15 +97,15 @@ void lw_device_refresh_status(struct lw_device *device)
 		.fault = (int32_t)controller->fault,
 		.flags = flags(device, launch_inhibit),
 		.launch_inhibit = launch_inhibit,
-		.position_um = lw_params_q16_to_um(params, motion->law.m),
-		.position_usteps = lw_law_pos_usteps(motion->law.m),
-		.m = motion->law.m,
-		.u = motion->law.u,
+		.position_um = lw_params_q16_to_um(params, reading.law.m),
+		.position_usteps = lw_law_pos_usteps(reading.law.m),
+		.m = reading.law.m,
+		.u = reading.law.u,
 		.drum_speed_edges_per_s = controller->drum_speed_edges_per_s,
 		.rope_speed_mm_per_s = rope_mm(device, controller->drum_speed_edges_per_s),
-		.rope_mm = rope_mm(device, motion->net_edges),
-		.net_edges = motion->net_edges,
-		.pattern_edges = motion->pattern_edges,
+		.rope_mm = rope_mm(device, reading.net_edges),
+		.net_edges = reading.net_edges,
+		.pattern_edges = reading.pattern_edges,
 		.uptime_ms = (uint32_t)(device->now_us / 1000),
 		.los_recoveries = controller->los_recoveries,
 		.span_error_um = lw_params_q16_to_um(
@@ -126,7 +127,7 @@ void lw_device_refresh_status(struct lw_device *device)
 		.illegal_transitions = controller->quadrature.illegal_transitions,
 		.switch_plus_triggers = controller->limit[LW_PLUS].triggers,
 		.switch_minus_triggers = controller->limit[LW_MINUS].triggers,
-		.steps = motion->steps,
+		.steps = reading.steps,
 		.requests = device->slave.pdu.counters[LW_BUS_SERVER_MESSAGES],
 		.crc_errors = device->slave.pdu.counters[LW_BUS_CRC_ERRORS],
 		.exceptions = device->slave.pdu.counters[LW_BUS_EXCEPTIONS],

@@ -11,6 +11,26 @@ void lw_motion_init(struct lw_motion *motion, const struct lw_law_window *window
 	};
 }
 
+struct lw_motion_reading lw_motion_read(const struct lw_motion *motion)
+{
+	const volatile uint32_t *interrupts = &motion->interrupts;
+	struct lw_motion_reading reading;
+	uint32_t before;
+
+	do {
+		before = *interrupts;
+		atomic_signal_fence(memory_order_seq_cst);
+		reading = (struct lw_motion_reading){
+			.law = motion->law,
+			.net_edges = motion->net_edges,
+			.pattern_edges = motion->pattern_edges,
+			.steps = motion->steps,
+		};
+		atomic_signal_fence(memory_order_seq_cst);
+	} while (before != *interrupts);
+	return reading;
+}
+
 /**
  * Shift the position by as much of the wanted correction as keeps it in the sweep, and keep the
  * rest for later edges. In whole microsteps, so that the phase of the step pulses stays.
@@ -91,9 +111,13 @@ static uint8_t reversal_side(const struct lw_motion *motion)
 static int take_edge(struct lw_motion *motion, int dd)
 {
 	const int step = lw_law_edge(&motion->law, motion->window, dd);
+	uint8_t side;
 
 	motion->last_dd = (int8_t)dd;
-	motion->reached |= reversal_side(motion);
+	side = reversal_side(motion);
+	if (side != 0) {
+		motion->reached |= side;
+	}
 	if (motion->requests) {
 		serve_requests(motion);
 	}
@@ -106,6 +130,7 @@ static int take_edge(struct lw_motion *motion, int dd)
 
 int lw_motion_encoder_edge(struct lw_motion *motion, int dd)
 {
+	motion->interrupts++;
 	motion->net_edges += dd;
 	if (motion->source != LW_EDGE_SOURCE_ENCODER) {
 		return 0;
@@ -119,6 +144,8 @@ int lw_motion_timer_edge(struct lw_motion *motion)
 	if (motion->source != LW_EDGE_SOURCE_TIMER) {
 		return 0;
 	}
+
+	motion->interrupts++;
 
 	const int step = take_edge(motion, 1);
 

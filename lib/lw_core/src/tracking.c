@@ -102,9 +102,8 @@ static void judge_reversal(struct lw_controller *controller, int side)
 {
 	struct lw_motion *motion = &controller->motion;
 	const uint8_t bit = side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS;
-	const bool reached = motion->reached & bit;
+	const bool reached = atomic_fetch_and(&motion->reached, (uint8_t)~bit) & bit;
 
-	motion->reached &= (uint8_t)~bit;
 	if (!reached && !in_reversal(controller, side)) {
 		controller->visiting[side] = false;
 	} else if (reached && !controller->visiting[side]) {

@@ -7,11 +7,13 @@
  * unless its comment says else. The supervisor hands work to it through the `request_*` fields,
  * which it fills before it sets `requests`, and leaves alone until the interrupt has cleared the
  * bit; while `source` is LW_EDGE_SOURCE_NONE the law is idle and the supervisor may write `law` and
- * `window` itself.
+ * `window` itself. The three fields of this hand-over are atomic: an access to one of them also
+ * keeps the accesses before and after it in order.
  */
 #ifndef LW_MOTION_H
 #define LW_MOTION_H
 
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -46,19 +48,22 @@ enum lw_motion_side_bit {
 struct lw_motion {
 	struct lw_law law;
 	const struct lw_law_window *window;
+	uint32_t interrupts;   /**< edges of either source; see lw_motion_read() */
 	int64_t net_edges;     /**< odometer: all drum edges */
 	int64_t pattern_edges; /**< drum edges followed since the last hand-over */
 	uint32_t steps;        /**< step pulses given */
 	int8_t last_dd;        /**< direction of the last edge that moved the law */
-	uint8_t reached;      /**< lw_motion_side_bit: edges taken inside a reversal; the supervisor
-			       *   clears what it has seen */
+	/** lw_motion_side_bit: edges taken inside a reversal; the supervisor clears what it has
+	 *  seen. */
+	_Atomic uint8_t reached;
 	uint8_t stop_at_rest; /**< lw_motion_side_bit: timer edges stop where the slope is 0 in
 			       *   the reversal at that side; written by the supervisor */
 	uint8_t blocked;      /**< lw_motion_side_bit: no steps that way (overtravel); written by
 			       *   the overtravel interrupt */
-	uint8_t source;       /**< enum lw_edge_source; written by the supervisor, and set to NONE
-			       *   by the interrupt when stop_at_rest is met */
-	uint8_t requests;     /**< enum lw_motion_request; set by the supervisor */
+	/** enum lw_edge_source; written by the supervisor, and set to NONE by the interrupt when
+	 *  stop_at_rest is met. */
+	_Atomic uint8_t source;
+	_Atomic uint8_t requests; /**< enum lw_motion_request; set by the supervisor */
 	const struct lw_law_window *request_window; /**< written by the supervisor */
 	int32_t request_correction_usteps; /**< written by the supervisor; the interrupt counts it
 					    *   down as it applies it */
@@ -77,6 +82,17 @@ static inline bool lw_motion_in_sweep(const struct lw_motion *motion)
 {
 	return lw_law_region(motion->window, motion->law.m) == 0;
 }
+
+/** What the edge interrupt changes, all of one moment. */
+struct lw_motion_reading {
+	struct lw_law law;
+	int64_t net_edges;
+	int64_t pattern_edges;
+	uint32_t steps;
+};
+
+/** Read what the edge interrupt changes. For anything that the interrupt may interrupt. */
+struct lw_motion_reading lw_motion_read(const struct lw_motion *motion);
 
 /** Start with nothing moving at position 0. */
 void lw_motion_init(struct lw_motion *motion, const struct lw_law_window *window);
