@@ -3,8 +3,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "bench.h"
-
 #define NS_PER_US 1000u
 #define TICK_NS   (LW_CONTROLLER_TICK_US * NS_PER_US)
 
@@ -45,14 +43,14 @@ int lw_world_init(struct lw_world *world, const struct lw_world_config *config,
 		memcpy(world->storage, config->record, config->record_length);
 		world->storage_length = config->record_length;
 	}
-	world->bench_section = lw_bench_section(world);
+	lw_plant_bench_init(&world->bench, &world->plant);
+	world->bench_section = lw_plant_bench_section(&world->bench);
 	world->device_config = (struct lw_device_config){
 		.host = LW_HOST_SIMULATOR,
 		.host_section = &world->bench_section,
 		.silence_us = config->silence_us,
 		.unit_id = config->unit_id,
 	};
-	lw_bench_init(world);
 	power_up(world, slave_now_us);
 	return 0;
 }
@@ -98,8 +96,8 @@ static void serve_outputs(struct lw_world *world)
 
 static void tick(struct lw_world *world)
 {
-	if (world->power_cut) {
-		world->power_cut = false;
+	if (world->bench.power_cut) {
+		world->bench.power_cut = false;
 		power_up(world, world->device.slave.last_request_us);
 	}
 	lw_device_tick(&world->device, world->now_ns / NS_PER_US);

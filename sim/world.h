@@ -14,6 +14,7 @@
 #include "lw/device.h"
 #include "lw/map.h"
 #include "lw/plant.h"
+#include "lw/plant_bench.h"
 
 /** How a world starts. */
 struct lw_world_config {
@@ -40,17 +41,14 @@ struct lw_world {
 	struct lw_world_config config;
 	struct lw_device_config device_config;
 	struct lw_bank_section bench_section;
-	struct lw_bench bench; /**< set-points and image of the bench registers */
-	uint64_t tick_ns;      /**< next tick */
-	uint64_t timer_ns;     /**< next edge of the edge timer */
+	struct lw_plant_bench bench;
+	uint64_t tick_ns;  /**< next tick */
+	uint64_t timer_ns; /**< next edge of the edge timer */
 	uint32_t timer_rate_edges_per_s;
 	bool stepper_enabled;
-	bool power_cut; /**< restart the controller on the next tick */
 	bool was_indexed;
 	uint8_t storage[LW_RECORD_SIZE];
 	size_t storage_length;
-	struct lw_plant_profile_point profile[LW_PLANT_PROFILE_POINTS_MAX];
-	size_t profile_count;
 };
 
 /**

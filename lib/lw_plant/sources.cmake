@@ -1,6 +1,7 @@
 # The one list of the simulated winch's sources, for the host build and the firmware build.
 set(LW_PLANT_SOURCES
   src/plant.c
+  src/plant_bench.c
   src/plant_carriage.c
   src/plant_drum.c
   src/plant_fault.c

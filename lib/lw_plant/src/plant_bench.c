@@ -1,34 +1,34 @@
-#include "bench.h"
+#include "lw/plant_bench.h"
 
 #include <errno.h>
 #include <string.h>
 
-static void refresh(struct lw_world *world)
+static void refresh(struct lw_plant_bench *bench)
 {
-	struct lw_bench *bench = &world->bench;
+	struct lw_bench *registers = &bench->registers;
 	struct lw_plant_truth truth;
 
-	lw_plant_read_truth(&world->plant, &truth);
-	bench->bench_carriage_um = (int32_t)truth.carriage_um;
-	bench->bench_carriage_mm_per_s = (int32_t)(truth.carriage_um_per_s / 1000);
-	bench->bench_commanded_usteps = (int32_t)truth.commanded_usteps;
-	bench->bench_slipped_usteps = (int32_t)truth.slipped_usteps;
-	bench->bench_transitions = truth.drum_transitions;
-	bench->bench_drum_actual_millirpm = (int32_t)truth.drum_milli_rpm;
-	bench->bench_profile_points = (int32_t)world->profile_count;
-	bench->bench_profile_running = lw_plant_drum_playing(&world->plant);
-	bench->bench_time_ms = (uint32_t)(truth.time_ns / 1000000);
-	if (!lw_plant_armed(&world->plant)) {
-		bench->bench_trigger_fault = LW_TRIGGER_FAULT_NONE;
+	lw_plant_read_truth(bench->plant, &truth);
+	registers->bench_carriage_um = (int32_t)truth.carriage_um;
+	registers->bench_carriage_mm_per_s = (int32_t)(truth.carriage_um_per_s / 1000);
+	registers->bench_commanded_usteps = (int32_t)truth.commanded_usteps;
+	registers->bench_slipped_usteps = (int32_t)truth.slipped_usteps;
+	registers->bench_transitions = truth.drum_transitions;
+	registers->bench_drum_actual_millirpm = (int32_t)truth.drum_milli_rpm;
+	registers->bench_profile_points = (int32_t)bench->profile_count;
+	registers->bench_profile_running = lw_plant_drum_playing(bench->plant);
+	registers->bench_time_ms = (uint32_t)(truth.time_ns / 1000000);
+	if (!lw_plant_armed(bench->plant)) {
+		registers->bench_trigger_fault = LW_TRIGGER_FAULT_NONE;
 	}
 }
 
 static const void *image(void *context)
 {
-	struct lw_world *world = context;
+	struct lw_plant_bench *bench = context;
 
-	refresh(world);
-	return &world->bench;
+	refresh(bench);
+	return &bench->registers;
 }
 
 static int allow(void *context, const struct lw_point *point, uint16_t element, int32_t value,
@@ -42,23 +42,24 @@ static int allow(void *context, const struct lw_point *point, uint16_t element, 
 	return 0;
 }
 
-static int append_profile(struct lw_world *world)
+static int append_profile(struct lw_plant_bench *bench)
 {
-	const int32_t count = world->bench.bench_argument;
-	const int32_t *window = world->bench.bench_profile;
-	const size_t window_points = sizeof(world->bench.bench_profile) / (2 * sizeof(window[0]));
+	const int32_t count = bench->registers.bench_argument;
+	const int32_t *window = bench->registers.bench_profile;
+	const size_t window_points =
+		sizeof(bench->registers.bench_profile) / (2 * sizeof(window[0]));
 
-	if (lw_plant_drum_playing(&world->plant)) {
+	if (lw_plant_drum_playing(bench->plant)) {
 		return -EBUSY; /* the plant reads the points while it plays them */
 	}
 	if (count < 1 || (size_t)count > window_points) {
 		return -EINVAL;
 	}
-	if (world->profile_count + (size_t)count > LW_PLANT_PROFILE_POINTS_MAX) {
+	if (bench->profile_count + (size_t)count > LW_PLANT_PROFILE_POINTS_MAX) {
 		return -ENOSPC;
 	}
 	for (int32_t i = 0; i < count; i++) {
-		world->profile[world->profile_count++] = (struct lw_plant_profile_point){
+		bench->profile[bench->profile_count++] = (struct lw_plant_profile_point){
 			.time_ms = (uint32_t)window[2 * i],
 			.drum_milli_rpm = window[2 * i + 1],
 		};
@@ -66,24 +67,24 @@ static int append_profile(struct lw_world *world)
 	return 0;
 }
 
-static int run_command(struct lw_world *world, enum lw_bench_command command)
+static int run_command(struct lw_plant_bench *bench, enum lw_bench_command command)
 {
-	struct lw_plant *plant = &world->plant;
-	const int32_t argument = world->bench.bench_argument;
+	struct lw_plant *plant = bench->plant;
+	const int32_t argument = bench->registers.bench_argument;
 
 	switch (command) {
 	case LW_BENCH_COMMAND_NONE:
 		return 0;
 	case LW_BENCH_COMMAND_PROFILE_CLEAR:
-		(void)lw_plant_drum_target(plant, world->bench.bench_drum_speed_millirpm);
-		world->profile_count = 0;
+		(void)lw_plant_drum_target(plant, bench->registers.bench_drum_speed_millirpm);
+		bench->profile_count = 0;
 		return 0;
 	case LW_BENCH_COMMAND_PROFILE_APPEND:
-		return append_profile(world);
+		return append_profile(bench);
 	case LW_BENCH_COMMAND_PROFILE_START:
-		return lw_plant_drum_play(plant, world->profile, world->profile_count);
+		return lw_plant_drum_play(plant, bench->profile, bench->profile_count);
 	case LW_BENCH_COMMAND_POWER_CUT:
-		world->power_cut = true;
+		bench->power_cut = true;
 		return 0;
 	case LW_BENCH_COMMAND_SLIP:
 		return lw_plant_inject(plant, LW_PLANT_FAULT_SLIP, argument);
@@ -99,34 +100,34 @@ static int run_command(struct lw_world *world, enum lw_bench_command command)
 	return -EINVAL;
 }
 
-static int arm(struct lw_world *world, enum lw_trigger_fault fault)
+static int arm(struct lw_plant_bench *bench, enum lw_trigger_fault fault)
 {
 	static const enum lw_plant_fault faults[] = {
 		[LW_TRIGGER_FAULT_STALL] = LW_PLANT_FAULT_STALL,
 		[LW_TRIGGER_FAULT_SLIP] = LW_PLANT_FAULT_SLIP,
 		[LW_TRIGGER_FAULT_LOSE_PULSES] = LW_PLANT_FAULT_ENCODER_LOSE_PULSES,
 	};
-	const struct lw_bench *bench = &world->bench;
+	const struct lw_bench *registers = &bench->registers;
 
 	if (fault == LW_TRIGGER_FAULT_NONE) {
 		return 0;
 	}
-	return lw_plant_arm(&world->plant, bench->bench_trigger_position_um,
-			    bench->bench_trigger_direction, faults[fault],
-			    bench->bench_trigger_argument);
+	return lw_plant_arm(bench->plant, registers->bench_trigger_position_um,
+			    registers->bench_trigger_direction, faults[fault],
+			    registers->bench_trigger_argument);
 }
 
 static void store(void *context, const struct lw_point *point, uint16_t element, int32_t value)
 {
-	struct lw_world *world = context;
-	struct lw_plant *plant = &world->plant;
+	struct lw_plant_bench *bench = context;
+	struct lw_plant *plant = bench->plant;
 	int ret = 0;
 
-	memcpy((char *)&world->bench + point->offset + element * sizeof(value), &value,
+	memcpy((char *)&bench->registers + point->offset + element * sizeof(value), &value,
 	       sizeof(value));
 	switch (point->address) {
 	case LW_ADDRESS_BENCH_COMMAND:
-		ret = run_command(world, (enum lw_bench_command)value);
+		ret = run_command(bench, (enum lw_bench_command)value);
 		break;
 	case LW_ADDRESS_BENCH_DRUM_SPEED_MILLIRPM:
 		ret = lw_plant_drum_target(plant, value);
@@ -161,38 +162,43 @@ static void store(void *context, const struct lw_point *point, uint16_t element,
 		ret = lw_plant_inject(plant, LW_PLANT_FAULT_CARRIAGE_REVERSED, value);
 		break;
 	case LW_ADDRESS_BENCH_TRIGGER_FAULT:
-		ret = arm(world, (enum lw_trigger_fault)value);
+		ret = arm(bench, (enum lw_trigger_fault)value);
 		break;
 	default:
 		return; /* an argument, used when a command comes */
 	}
-	world->bench.bench_result = -ret;
+	bench->registers.bench_result = -ret;
 }
 
-struct lw_bank_section lw_bench_section(struct lw_world *world)
+struct lw_bank_section lw_plant_bench_section(struct lw_plant_bench *bench)
 {
 	return (struct lw_bank_section){
 		.space = LW_SPACE_HOLDING,
 		.points = lw_map_bench,
 		.point_count = LW_MAP_BENCH_COUNT,
-		.context = world,
+		.context = bench,
 		.image = image,
 		.allow = allow,
 		.store = store,
 	};
 }
 
-void lw_bench_init(struct lw_world *world)
+void lw_plant_bench_init(struct lw_plant_bench *bench, struct lw_plant *plant)
 {
+	/* The profile is large, and nobody reads it beyond its count. */
+	bench->plant = plant;
+	bench->power_cut = false;
+	bench->profile_count = 0;
+	memset(&bench->registers, 0, sizeof(bench->registers));
 	for (size_t i = 0; i < LW_MAP_BENCH_COUNT; i++) {
 		const struct lw_point *point = &lw_map_bench[i];
 
 		if (point->flags & LW_POINT_WRITABLE) {
-			memcpy((char *)&world->bench + point->offset, &point->default_value,
+			memcpy((char *)&bench->registers + point->offset, &point->default_value,
 			       sizeof(int32_t));
 		}
 	}
 	/* The plant's own default is another one. */
 	(void)lw_plant_drum_acceleration(
-		&world->plant, world->bench.bench_drum_acceleration_millirpm_per_s / 1000.0);
+		plant, bench->registers.bench_drum_acceleration_millirpm_per_s / 1000.0);
 }
