@@ -174,14 +174,14 @@ void lw_device_init(struct lw_device *device, const struct lw_device_config *con
 	}
 	device->staged = device->active;
 	device->stored = device->active;
-	device->line = device->active;
+	device->line = config->default_line ? lw_params_default : device->active;
 
 	lw_controller_init(&device->controller, &device->active, &device->derived, inputs, now_us);
 	lw_device_make_bank(device);
 	device->slave_config = (struct lw_slave_config){
-		.unit_id = config->unit_id ? config->unit_id : (uint8_t)device->active.unit_id,
+		.unit_id = config->unit_id ? config->unit_id : (uint8_t)device->line.unit_id,
 		.rtu.silence_us = config->silence_us ? config->silence_us
-						     : lw_rtu_silence_us(device->active.baud_rate),
+						     : lw_rtu_silence_us(device->line.baud_rate),
 		.pdu.bank = &device->bank,
 		.pdu.device_id = {LW_PRODUCT_VENDOR, LW_PRODUCT_CODE, LW_VERSION_STRING,
 				  LW_PRODUCT_URL, LW_PRODUCT_NAME, LW_PRODUCT_CODE},

@@ -35,6 +35,8 @@ struct lw_device_config {
 	uint32_t silence_us;
 	/** Unit id to use instead of the stored one; 0: the stored one. */
 	uint8_t unit_id;
+	/** Use the factory line settings until the next power-up, whatever is stored. */
+	bool default_line;
 };
 
 /** The last command, for the registers command_*. */
