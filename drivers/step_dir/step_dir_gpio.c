@@ -1,0 +1,135 @@
+#define DT_DRV_COMPAT levelwind_step_dir_gpio
+
+#include <errno.h>
+
+#include <zephyr/drivers/gpio.h>
+#include <zephyr/kernel.h>
+
+#include "lw/drivers/step_dir.h"
+
+/** Longest time that a step may wait inside of its interrupt. */
+#define WAIT_MAX_NS 1000
+
+struct step_dir_config {
+	struct gpio_dt_spec step;
+	struct gpio_dt_spec dir;
+	struct gpio_dt_spec enable; /**< port is NULL where it is not wired */
+	struct gpio_dt_spec alarm;  /**< port is NULL where it is not wired */
+	uint32_t dir_setup_ns;
+	uint32_t step_pulse_ns;
+	/** After a pulse: its space, and the hold time of the direction, whichever is longer. */
+	uint32_t rest_ns;
+};
+
+/** Owned by the interrupt that steps. */
+struct step_dir_data {
+	int direction; /**< at the output; 0: not known yet */
+};
+
+/** Wait at least this long. */
+static void wait_ns(uint32_t duration_ns)
+{
+	if (duration_ns == 0) {
+		return;
+	}
+	if (IS_ENABLED(CONFIG_ARCH_POSIX)) {
+		/* No time passes in a loop there. */
+		k_busy_wait(DIV_ROUND_UP(duration_ns, NSEC_PER_USEC));
+		return;
+	}
+
+	/* One more, because the first cycle has begun already. */
+	const uint32_t cycles = k_ns_to_cyc_ceil32(duration_ns) + 1;
+	const uint32_t start_cycles = k_cycle_get_32();
+
+	while (k_cycle_get_32() - start_cycles < cycles) {
+	}
+}
+
+static void step_dir_step(const struct device *dev, int direction)
+{
+	const struct step_dir_config *config = dev->config;
+	struct step_dir_data *data = dev->data;
+
+	if (direction != data->direction) {
+		data->direction = direction;
+		(void)gpio_pin_set_dt(&config->dir, direction > 0);
+		wait_ns(config->dir_setup_ns);
+	}
+	(void)gpio_pin_set_dt(&config->step, 1);
+	wait_ns(config->step_pulse_ns);
+	(void)gpio_pin_set_dt(&config->step, 0);
+	/*
+	 * Waited for here and not before the next step: short as it is, it costs less than to
+	 * find out when the last pulse ended.
+	 */
+	wait_ns(config->rest_ns);
+}
+
+static int step_dir_enable(const struct device *dev, bool enabled)
+{
+	const struct step_dir_config *config = dev->config;
+
+	return config->enable.port == NULL ? 0 : gpio_pin_set_dt(&config->enable, enabled);
+}
+
+static int step_dir_alarm(const struct device *dev)
+{
+	const struct step_dir_config *config = dev->config;
+
+	return config->alarm.port == NULL ? -ENOTSUP : gpio_pin_get_dt(&config->alarm);
+}
+
+static int configure(const struct gpio_dt_spec *pin, gpio_flags_t flags)
+{
+	if (pin->port == NULL) {
+		return 0;
+	}
+	return gpio_is_ready_dt(pin) ? gpio_pin_configure_dt(pin, flags) : -ENODEV;
+}
+
+static int step_dir_init(const struct device *dev)
+{
+	const struct step_dir_config *config = dev->config;
+	int ret = configure(&config->enable, GPIO_OUTPUT_INACTIVE);
+
+	if (ret == 0) {
+		ret = configure(&config->step, GPIO_OUTPUT_INACTIVE);
+	}
+	if (ret == 0) {
+		ret = configure(&config->dir, GPIO_OUTPUT_INACTIVE);
+	}
+	if (ret == 0) {
+		ret = configure(&config->alarm, GPIO_INPUT);
+	}
+	return ret;
+}
+
+static const struct lw_step_dir_api step_dir_api = {
+	.step = step_dir_step,
+	.enable = step_dir_enable,
+	.alarm = step_dir_alarm,
+};
+
+#define REST_NS(inst) MAX(DT_INST_PROP(inst, step_space_ns), DT_INST_PROP(inst, dir_hold_ns))
+
+#define STEP_DIR_DEFINE(inst)                                                                      \
+	BUILD_ASSERT(DT_INST_PROP(inst, step_pulse_ns) + DT_INST_PROP(inst, dir_setup_ns) +        \
+				     REST_NS(inst) <=                                              \
+			     WAIT_MAX_NS,                                                          \
+		     "too slow for levelwind,step-dir-gpio: use a driver with a timer");           \
+	static const struct step_dir_config step_dir_config_##inst = {                             \
+		.step = GPIO_DT_SPEC_INST_GET(inst, step_gpios),                                   \
+		.dir = GPIO_DT_SPEC_INST_GET(inst, dir_gpios),                                     \
+		.enable = GPIO_DT_SPEC_INST_GET_OR(inst, enable_gpios, {0}),                       \
+		.alarm = GPIO_DT_SPEC_INST_GET_OR(inst, alarm_gpios, {0}),                         \
+		.dir_setup_ns = DT_INST_PROP(inst, dir_setup_ns),                                  \
+		.step_pulse_ns = DT_INST_PROP(inst, step_pulse_ns),                                \
+		.rest_ns = REST_NS(inst),                                                          \
+	};                                                                                         \
+	static struct step_dir_data step_dir_data_##inst;                                          \
+	DEVICE_DT_INST_DEFINE(inst, step_dir_init, NULL, &step_dir_data_##inst,                    \
+			      &step_dir_config_##inst, POST_KERNEL,                                \
+			      CONFIG_KERNEL_INIT_PRIORITY_DEVICE, &step_dir_api);
+
+DT_INST_FOREACH_STATUS_OKAY(STEP_DIR_DEFINE)
