@@ -1,0 +1,118 @@
+#include "limits.h"
+
+#include <zephyr/task_wdt/task_wdt.h>
+
+#include "app.h"
+#include "lw/drivers/limit_switch.h"
+
+/** A bouncing switch changes its contacts a few dozen times in as many hundred microseconds. */
+#define CHANGES_MAX 32
+
+/** A change of the contacts of one switch, and where the carriage was. */
+struct change {
+	uint64_t now_us;
+	struct lw_limit_switch_trigger at;
+	struct lw_contacts contacts;
+	uint8_t side;
+};
+
+K_MSGQ_DEFINE(changes, sizeof(struct change), CHANGES_MAX, 8);
+
+/* A change found no room. Set by the interrupts, cleared by the thread. */
+static atomic_t changes_lost;
+
+static K_THREAD_STACK_DEFINE(stack, 1024);
+static struct k_thread thread;
+
+static const struct device *const switches[] = {
+	[LW_PLUS] = DEVICE_DT_GET(DT_PHANDLE(APP_NODE, limit_plus)),
+	[LW_MINUS] = DEVICE_DT_GET(DT_PHANDLE(APP_NODE, limit_minus)),
+};
+
+static struct change change_now(int side, struct lw_contacts contacts)
+{
+	const struct lw_motion *motion = &app_device.controller.motion;
+
+	return (struct change){
+		.now_us = app_now_us(),
+		.at = {.pos_usteps = lw_law_pos_usteps(motion->law.m),
+		       .direction = (int8_t)lw_motion_direction(motion)},
+		.contacts = contacts,
+		.side = (uint8_t)side,
+	};
+}
+
+static void on_change(struct lw_contacts contacts, void *user_data)
+{
+	const struct change change = change_now((int)(intptr_t)user_data, contacts);
+
+	if (k_msgq_put(&changes, &change, K_NO_WAIT) != 0) {
+		atomic_set(&changes_lost, 1);
+	}
+}
+
+static void take(const struct change *change)
+{
+	struct lw_controller *controller = &app_device.controller;
+
+	lw_limit_switch_input(&controller->limit[change->side], &controller->limit_config,
+			      change->contacts.no_closed, change->contacts.nc_closed, change->at,
+			      change->now_us);
+}
+
+/** Read the contacts anew, where not every change could be kept. */
+static void catch_up(void)
+{
+	for (int side = 0; side < 2; side++) {
+		struct lw_contacts contacts;
+
+		if (lw_contacts_read(switches[side], &contacts) == 0) {
+			const struct change change = change_now(side, contacts);
+
+			take(&change);
+		}
+	}
+}
+
+static void run(void *channel, void *unused1, void *unused2)
+{
+	struct change change;
+
+	ARG_UNUSED(unused1);
+	ARG_UNUSED(unused2);
+	for (;;) {
+		const int ret =
+			k_msgq_get(&changes, &change, K_MSEC(CONFIG_LW_WATCHDOG_TIMEOUT_MS / 2));
+
+		task_wdt_feed((int)(intptr_t)channel);
+		k_mutex_lock(&app_lock, K_FOREVER);
+		if (ret == 0) {
+			take(&change);
+		}
+		if (k_msgq_num_used_get(&changes) == 0 && atomic_clear(&changes_lost)) {
+			catch_up();
+		}
+		k_mutex_unlock(&app_lock);
+	}
+}
+
+int limits_start(void)
+{
+	const int channel = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, NULL, NULL);
+
+	if (channel < 0) {
+		return channel;
+	}
+	k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), run,
+			(void *)(intptr_t)channel, NULL, NULL, APP_PRIORITY_LIMITS, 0, K_NO_WAIT);
+	k_thread_name_set(&thread, "limits");
+	for (int side = 0; side < 2; side++) {
+		const int ret =
+			lw_contacts_start(switches[side], on_change, (void *)(intptr_t)side);
+
+		if (ret) {
+			return ret;
+		}
+	}
+	return 0;
+}

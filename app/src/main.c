@@ -1,0 +1,142 @@
+/*
+ * The firmware's start, and the supervisor that follows it in the main thread.
+ */
+#include <errno.h>
+
+#include <zephyr/drivers/gpio.h>
+#include <zephyr/logging/log.h>
+#include <zephyr/task_wdt/task_wdt.h>
+
+#include "app.h"
+#include "limits.h"
+#include "machine.h"
+#include "modbus.h"
+#include "storage.h"
+#ifdef CONFIG_LW_SIMULATED_MACHINE
+#include "simulated_machine.h"
+#endif
+
+LOG_MODULE_REGISTER(levelwind);
+
+struct lw_device app_device;
+K_MUTEX_DEFINE(app_lock);
+
+static const struct gpio_dt_spec default_settings =
+	GPIO_DT_SPEC_GET_OR(APP_NODE, default_settings_gpios, {0});
+
+static struct lw_device_config config = {
+	.host = (enum lw_host)CONFIG_LW_HOST,
+	.silence_us = CONFIG_LW_MODBUS_SILENCE_US,
+};
+
+static int read_default_settings(bool *wanted)
+{
+	int ret;
+
+	*wanted = false;
+	if (default_settings.port == NULL) {
+		return 0;
+	}
+	if (!gpio_is_ready_dt(&default_settings)) {
+		return -ENODEV;
+	}
+	ret = gpio_pin_configure_dt(&default_settings, GPIO_INPUT);
+	if (ret == 0) {
+		ret = gpio_pin_get_dt(&default_settings);
+	}
+	*wanted = ret > 0;
+	return MIN(ret, 0);
+}
+
+/** Bring the controller up from what is stored, with no interrupt in between. */
+static int power_up(void)
+{
+	uint8_t record[LW_RECORD_SIZE];
+	const size_t length = storage_load(record, sizeof(record));
+	struct lw_inputs inputs;
+	unsigned int key;
+	int ret;
+
+	key = irq_lock();
+	ret = machine_read(&inputs);
+	if (ret == 0) {
+		lw_device_init(&app_device, &config, length > 0 ? record : NULL, length, &inputs,
+			       app_now_us(), app_now_us());
+	}
+	irq_unlock(key);
+	return ret;
+}
+
+static int start(void)
+{
+	int ret = machine_check();
+
+	if (ret == 0) {
+		ret = read_default_settings(&config.default_line);
+	}
+#ifdef CONFIG_LW_SIMULATED_MACHINE
+	if (ret == 0) {
+		ret = simulated_machine_start();
+		config.host_section = simulated_machine_section();
+	}
+#endif
+	if (ret == 0 && storage_start() != 0) {
+		LOG_ERR("no storage: factory parameters, and none can be saved");
+	}
+	if (ret == 0) {
+		ret = power_up();
+	}
+	if (ret == 0) {
+		ret = machine_start();
+	}
+	if (ret == 0) {
+		ret = limits_start();
+	}
+	return ret ? ret : modbus_start();
+}
+
+/** One tick, and what follows from it outside of the core. */
+static int supervise(void)
+{
+	int ret = 0;
+
+	k_mutex_lock(&app_lock, K_FOREVER);
+#ifdef CONFIG_LW_SIMULATED_MACHINE
+	if (simulated_machine_power_cut()) {
+		ret = power_up();
+	}
+	simulated_machine_note_indexed(app_device.controller.indexed);
+#endif
+	/* The time is taken under the lock, so that no contact change is later than the tick. */
+	lw_device_tick(&app_device, app_now_us());
+	storage_serve();
+	if (ret == 0) {
+		ret = machine_serve_outputs();
+	}
+	k_mutex_unlock(&app_lock);
+	return ret;
+}
+
+int main(void)
+{
+	struct k_timer ticks;
+	int channel = -1;
+	int ret;
+
+	k_thread_priority_set(k_current_get(), APP_PRIORITY_SUPERVISOR);
+	ret = task_wdt_init(NULL);
+	if (ret == 0) {
+		channel = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, NULL, NULL);
+		ret = channel < 0 ? channel : start();
+	}
+	k_timer_init(&ticks, NULL, NULL);
+	k_timer_start(&ticks, K_USEC(LW_CONTROLLER_TICK_US), K_USEC(LW_CONTROLLER_TICK_US));
+	while (ret == 0) {
+		(void)k_timer_status_sync(&ticks);
+		task_wdt_feed(channel);
+		ret = supervise();
+	}
+	/* A driver has failed. The watchdog restarts what cannot go on. */
+	LOG_ERR("stopped: error %d", ret);
+	return ret;
+}

@@ -1,0 +1,222 @@
+#include "modbus.h"
+
+#include <errno.h>
+#include <string.h>
+
+#include <zephyr/drivers/gpio.h>
+#include <zephyr/drivers/uart.h>
+#include <zephyr/task_wdt/task_wdt.h>
+
+#include "app.h"
+
+static const struct device *const uart = DEVICE_DT_GET(DT_PHANDLE(APP_NODE, modbus_uart));
+static const struct gpio_dt_spec driver_enable =
+	GPIO_DT_SPEC_GET_OR(APP_NODE, driver_enable_gpios, {0});
+
+static K_THREAD_STACK_DEFINE(stack, 2048);
+static struct k_thread thread;
+
+/* What has been received. Filled by the interrupt, emptied by the thread with it locked out. */
+static struct {
+	uint64_t last_byte_us;
+	size_t length; /**< one more than a frame can have stands for too much */
+	uint8_t bytes[LW_RTU_FRAME_MAX + 1];
+} rx;
+static K_SEM_DEFINE(rx_begun, 0, 1);
+
+/* What is being sent. The thread's while it holds tx_free, else the interrupt's. */
+static struct {
+	size_t length;
+	size_t sent;
+	uint8_t bytes[LW_RTU_FRAME_MAX];
+} tx;
+static K_SEM_DEFINE(tx_free, 1, 1);
+
+static bool sending(void)
+{
+	return k_sem_count_get(&tx_free) == 0;
+}
+
+static void receive(void)
+{
+	uint8_t bytes[32];
+	const int count = uart_fifo_read(uart, bytes, sizeof(bytes));
+
+	/* On a two-wire line everything that is sent is heard, too. */
+	if (count <= 0 || (driver_enable.port != NULL && sending())) {
+		return;
+	}
+
+	const size_t room = sizeof(rx.bytes) - rx.length;
+	const size_t taken = MIN((size_t)count, room);
+
+	memcpy(&rx.bytes[rx.length], bytes, taken);
+	rx.length += taken;
+	rx.last_byte_us = app_now_us();
+	k_sem_give(&rx_begun);
+}
+
+static void send(void)
+{
+	if (tx.sent < tx.length) {
+		const int count =
+			uart_fifo_fill(uart, &tx.bytes[tx.sent], (int)(tx.length - tx.sent));
+
+		tx.sent += count > 0 ? (size_t)count : 0;
+	} else if (uart_irq_tx_complete(uart)) {
+		uart_irq_tx_disable(uart);
+		if (driver_enable.port != NULL) {
+			(void)gpio_pin_set_dt(&driver_enable, 0);
+		}
+		k_sem_give(&tx_free);
+	}
+}
+
+static void on_uart(const struct device *dev, void *user_data)
+{
+	ARG_UNUSED(user_data);
+	while (uart_irq_update(dev) && uart_irq_is_pending(dev)) {
+		if (uart_irq_rx_ready(dev)) {
+			receive();
+		}
+		if (uart_irq_tx_ready(dev)) {
+			send();
+		}
+	}
+}
+
+/**
+ * Wait until the line has been silent after some bytes, and take them. One kernel timeout for each
+ * silence, not for each byte.
+ *
+ * @return bytes; 0 if nothing has come for a while
+ */
+static size_t wait_for_frame(uint8_t bytes[LW_RTU_FRAME_MAX + 1], uint64_t *last_byte_us)
+{
+	const uint32_t silence_us = app_device.slave_config.rtu.silence_us;
+	uint32_t wait_us = silence_us;
+
+	if (k_sem_take(&rx_begun, K_MSEC(CONFIG_LW_WATCHDOG_TIMEOUT_MS / 2)) != 0) {
+		return 0;
+	}
+	for (;;) {
+		size_t length = 0;
+
+		k_usleep((int32_t)wait_us);
+
+		const unsigned int key = irq_lock();
+		const uint64_t silent_us = app_now_us() - rx.last_byte_us;
+
+		if (silent_us >= silence_us) {
+			length = rx.length;
+			memcpy(bytes, rx.bytes, length);
+			*last_byte_us = rx.last_byte_us;
+			rx.length = 0;
+			k_sem_reset(&rx_begun);
+		}
+		irq_unlock(key);
+		if (length > 0) {
+			return length;
+		}
+		wait_us = (uint32_t)(silence_us - silent_us);
+	}
+}
+
+static void run(void *channel, void *unused1, void *unused2)
+{
+	uint8_t bytes[LW_RTU_FRAME_MAX + 1];
+	uint64_t last_byte_us;
+
+	ARG_UNUSED(unused1);
+	ARG_UNUSED(unused2);
+	for (;;) {
+		const size_t count = wait_for_frame(bytes, &last_byte_us);
+		struct lw_slave *slave = &app_device.slave;
+
+		task_wdt_feed((int)(intptr_t)channel);
+		if (count == 0) {
+			continue;
+		}
+		(void)k_sem_take(&tx_free, K_FOREVER);
+		k_mutex_lock(&app_lock, K_FOREVER);
+		lw_slave_receive(slave, bytes, count, last_byte_us);
+		tx.length = lw_slave_poll(slave, app_now_us(), tx.bytes);
+		k_mutex_unlock(&app_lock);
+		tx.sent = 0;
+		if (tx.length == 0) {
+			k_sem_give(&tx_free);
+			continue;
+		}
+		if (driver_enable.port != NULL) {
+			(void)gpio_pin_set_dt(&driver_enable, 1);
+		}
+		uart_irq_tx_enable(uart);
+	}
+}
+
+#ifdef CONFIG_UART_USE_RUNTIME_CONFIGURE
+static int configure_line(void)
+{
+	const struct lw_params *line = &app_device.line;
+	struct uart_config config = {
+		.baudrate = (uint32_t)line->baud_rate,
+		.data_bits = UART_CFG_DATA_BITS_8,
+		.parity = UART_CFG_PARITY_NONE,
+		.stop_bits = UART_CFG_STOP_BITS_1,
+		.flow_ctrl = UART_CFG_FLOW_CTRL_NONE,
+	};
+
+	switch ((enum lw_line_format)line->line_format) {
+	case LW_LINE_FORMAT_8E1:
+		config.parity = UART_CFG_PARITY_EVEN;
+		break;
+	case LW_LINE_FORMAT_8O1:
+		config.parity = UART_CFG_PARITY_ODD;
+		break;
+	case LW_LINE_FORMAT_8N2:
+		config.stop_bits = UART_CFG_STOP_BITS_2;
+		break;
+	case LW_LINE_FORMAT_8N1:
+		break;
+	}
+	return uart_configure(uart, &config);
+}
+#else
+/** The line of this board has no baud rate and no parity. */
+static int configure_line(void)
+{
+	return 0;
+}
+#endif
+
+int modbus_start(void)
+{
+	int channel;
+	int ret;
+
+	if (!device_is_ready(uart) ||
+	    (driver_enable.port != NULL && !gpio_is_ready_dt(&driver_enable))) {
+		return -ENODEV;
+	}
+	ret = driver_enable.port == NULL
+		      ? 0
+		      : gpio_pin_configure_dt(&driver_enable, GPIO_OUTPUT_INACTIVE);
+	if (ret == 0) {
+		ret = configure_line();
+	}
+	if (ret == 0) {
+		ret = uart_irq_callback_user_data_set(uart, on_uart, NULL);
+	}
+	if (ret) {
+		return ret;
+	}
+	channel = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, NULL, NULL);
+	if (channel < 0) {
+		return channel;
+	}
+	k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), run,
+			(void *)(intptr_t)channel, NULL, NULL, APP_PRIORITY_MODBUS, 0, K_NO_WAIT);
+	k_thread_name_set(&thread, "modbus");
+	uart_irq_rx_enable(uart);
+	return 0;
+}
