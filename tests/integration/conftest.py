@@ -1,6 +1,7 @@
 """The integration suite talks Modbus to a running slave, whichever it is.
 
 --target sim                 starts the simulator (default)
+--target native_sim          starts the firmware, built for Zephyr's native_sim
 --target serial:/dev/ttyX    a slave that is there already; it must have the bench block
 """
 
@@ -8,11 +9,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from slave import RawLine, Simulator, Slave, bring_to_rest, start_simulator
+from slave import RawLine, Simulator, Slave, bring_to_rest, start
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--target", default="sim", help="sim, or serial:PATH")
+    parser.addoption("--target", default="sim", help="sim, native_sim, or serial:PATH")
 
 
 @pytest.fixture(scope="session")
@@ -22,33 +23,28 @@ def target(request: pytest.FixtureRequest) -> str:
 
 @pytest.fixture(scope="module")
 def simulator(target: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulator | None]:
-    if target != "sim":
+    if target.startswith("serial:"):
         yield None
         return
-    running = start_simulator(
-        tmp_path_factory.mktemp("sim"),
-        "--speed",
-        "10",
-        "--storage",
-        str(tmp_path_factory.mktemp("storage") / "parameters.bin"),
-    )
+    folder = tmp_path_factory.mktemp(target)
+    running = start(target, folder, folder / "parameters.bin", fast=True)
     yield running
     if running.process.poll() is None:
         assert running.stop() == 0
 
 
 @pytest.fixture
-def own_simulator(target: str) -> Iterator[Callable[..., Simulator]]:
-    """Starts simulators of the test's own, and ends what the test has left running."""
-    if target != "sim":
-        pytest.skip("needs a simulator of its own")
+def own_simulator(target: str, tmp_path: Path) -> Iterator[Callable[..., Simulator]]:
+    """Starts programs of the test's own, and ends what the test leaves running."""
+    if target.startswith("serial:"):
+        pytest.skip("needs a program of its own")
     running = []
 
-    def start(folder: Path, *options: str) -> Simulator:
-        running.append(start_simulator(folder, *options))
+    def start_one(storage: Path = tmp_path / "parameters.bin") -> Simulator:
+        running.append(start(target, tmp_path, storage))
         return running[-1]
 
-    yield start
+    yield start_one
     for simulator in running:
         simulator.process.kill()
         simulator.process.wait()

@@ -1,8 +1,12 @@
 """What the integration tests drive: a simulator process, a slave by register names, a bare line."""
 
+import atexit
 import os
+import select
 import signal
 import subprocess
+import threading
+import tty
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,26 +17,38 @@ from pymodbus.client import ModbusSerialClient
 
 UNIT = 1
 NATIVE_DIR = Path(os.environ.get("LEVELWIND_NATIVE_DIR", "build/host"))
+NATIVE_SIM = Path(os.environ.get("LEVELWIND_NATIVE_SIM", "build/native_sim/zephyr/zephyr.exe"))
 TEST_DIR = Path(os.environ.get("LEVELWIND_TEST_DIR", "build/san"))
 
 
 @dataclass
 class Simulator:
-    """A running simulator."""
+    """A running program with a controller and a simulated machine in it."""
 
     port: Path
     process: subprocess.Popen[str]
+
+    def __post_init__(self) -> None:
+        atexit.register(self.process.kill)  # after a test that failed half-way
 
     def stop(self, with_signal: int = signal.SIGTERM) -> int:
         self.process.send_signal(with_signal)
         return self.process.wait(timeout=10)
 
 
-def start_simulator(folder: Path, *options: str) -> Simulator:
-    """Start the simulator and wait until it says that it answers."""
+def start(target: str, folder: Path, storage: Path, *, fast: bool = False) -> Simulator:
+    """Start the program of a target and wait until it answers.
+
+    `storage` is the file that keeps its parameters. `fast` lets its time pass faster than ours.
+    """
+    return {"sim": start_simulator, "native_sim": start_native_sim}[target](folder, storage, fast)
+
+
+def start_simulator(folder: Path, storage: Path, fast: bool) -> Simulator:
     port = folder / "port"
     process = subprocess.Popen(
-        [str(NATIVE_DIR / "lw_sim"), "--port", str(port), *options],
+        [str(NATIVE_DIR / "lw_sim"), "--port", str(port), "--storage", str(storage)]
+        + ["--speed", "10"] * fast,
         stdout=subprocess.PIPE,
         text=True,
     )
@@ -40,6 +56,43 @@ def start_simulator(folder: Path, *options: str) -> Simulator:
     line = process.stdout.readline()
     assert line == f"ready {port}\n", f"the simulator said {line!r}"
     return Simulator(port, process)
+
+
+def start_native_sim(folder: Path, storage: Path, fast: bool) -> Simulator:
+    del folder
+    firmware_end, port = join_terminals()
+    process = subprocess.Popen(
+        [str(NATIVE_SIM), f"-modbus-uart_port={firmware_end}", f"-flash={storage}", "-rt"]
+        + ["-rt-ratio=4"] * fast,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    said = []
+    while not said or "connected to the serial port" not in said[-1]:
+        said.append(process.stdout.readline())
+        assert said[-1], f"the firmware said {said!r}"
+    return Simulator(port, process)
+
+
+def join_terminals() -> tuple[Path, Path]:
+    """A null modem: two pseudo terminals that stay, whoever opens and closes them."""
+    masters = []
+    paths = []
+    for _ in range(2):
+        master, slave = os.openpty()
+        tty.setraw(slave)  # and never closed, or the master would see a hang-up
+        masters.append(master)
+        paths.append(Path(os.ttyname(slave)))
+
+    def copy() -> None:
+        while True:
+            for ready in select.select(masters, [], [])[0]:
+                os.write(masters[1 - masters.index(ready)], os.read(ready, 4096))
+
+    threading.Thread(target=copy, daemon=True).start()
+    return paths[0], paths[1]
 
 
 class Slave:
@@ -140,7 +193,7 @@ class RawLine:
         self.line.reset_input_buffer()
         self.line.write(frame)
         answer = b""
-        while piece := self.line.read(256 if not answer else max(1, self.line.in_waiting)):
+        while piece := self.line.read(max(1, self.line.in_waiting)):
             answer += piece
             if answer and crc16(answer) == 0 and len(answer) >= 5:
                 break

@@ -11,10 +11,10 @@ PAGE = Path(__file__).parents[2] / "doc" / "integration.md"
 EXCHANGE = re.compile(r"^    > ([0-9A-F ]+)\n    < ([0-9A-F ]+)$", re.M)
 
 
-def test_documented_frames(own_simulator: Callable[..., Simulator], tmp_path: Path) -> None:
+def test_documented_frames(own_simulator: Callable[..., Simulator]) -> None:
     exchanges = EXCHANGE.findall(PAGE.read_text())
     assert len(exchanges) > 8
-    port = str(own_simulator(tmp_path).port)
+    port = str(own_simulator().port)
     slave = Slave(port)
     slave.wait(lambda: slave.flag(Flag.DRUM_AT_REST))
     slave.close()

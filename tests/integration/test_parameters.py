@@ -89,7 +89,7 @@ def test_parameters_are_refused_while_tracking(slave: Slave) -> None:
 
 def test_save_survives_a_kill(own_simulator: Callable[..., Simulator], tmp_path: Path) -> None:
     storage = tmp_path / "parameters.bin"
-    first = own_simulator(tmp_path, "--storage", str(storage))
+    first = own_simulator(storage)
     slave = Slave(str(first.port))
     assert slave.flag(Flag.DEFAULTS_LOADED)
     slave.write("pitch_um", 11_000)
@@ -101,7 +101,7 @@ def test_save_survives_a_kill(own_simulator: Callable[..., Simulator], tmp_path:
     slave.close()
     first.stop(signal.SIGKILL)
 
-    second = own_simulator(tmp_path, "--storage", str(storage))
+    second = own_simulator(storage)
     slave = Slave(str(second.port))
     for offset in (0, 1000, 2000):
         assert slave.read("pitch_um", offset) == 11_000
@@ -110,8 +110,12 @@ def test_save_survives_a_kill(own_simulator: Callable[..., Simulator], tmp_path:
     assert second.stop() == 0
 
 
-def test_save_that_fails_says_so(own_simulator: Callable[..., Simulator], tmp_path: Path) -> None:
-    running = own_simulator(tmp_path, "--storage", str(tmp_path / "missing" / "parameters.bin"))
+def test_save_that_fails_says_so(
+    target: str, own_simulator: Callable[..., Simulator], tmp_path: Path
+) -> None:
+    if target != "sim":
+        pytest.skip("only the simulator's storage can be made to fail: its folder is missing")
+    running = own_simulator(tmp_path / "missing" / "parameters.bin")
     slave = Slave(str(running.port))
     assert slave.command(Command.SAVE) == Result.FAILED
     assert slave.read("command_reason") == Reason.STORAGE_FAILED

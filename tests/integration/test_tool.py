@@ -212,10 +212,8 @@ def test_ctrl_c_ends_watching_without_a_traceback(at: str) -> None:
     assert b"Traceback" not in said
 
 
-def test_a_killed_simulator_is_told(
-    own_simulator: Callable[..., Simulator], tmp_path: Path
-) -> None:
-    running = own_simulator(tmp_path)
+def test_a_killed_simulator_is_told(own_simulator: Callable[..., Simulator]) -> None:
+    running = own_simulator()
     with watching(str(running.port)) as process:
         running.stop(signal.SIGKILL)
         _, said = process.communicate(timeout=20)
