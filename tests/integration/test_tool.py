@@ -109,7 +109,7 @@ def test_index_jog_mode_and_trim(at: str) -> None:
 
 
 def test_jog_into_a_switch_ends_well(at: str) -> None:
-    assert "unindexed" in output(at, "jog", "minus", "--for", "5")
+    assert "unindexed" in output(at, "jog", "minus", "--for", "60")
 
 
 def test_backup_and_restore_all_or_nothing(at: str, tmp_path: Path) -> None:
