@@ -26,6 +26,7 @@ def environment(port: str) -> dict[str, str]:
         "LEVELWIND_PORT": port,
         "LEVELWIND_NATIVE_DIR": str(NATIVE_DIR),
         "COLUMNS": "100",
+        "TERM": "xterm",
     }
 
 
