@@ -354,6 +354,19 @@ static int run(struct simulator *simulator)
 	return EXIT_SUCCESS;
 }
 
+static const char *port_error(int error)
+{
+	switch (error) {
+	case -EEXIST:
+		return "exists and is neither a serial port nor a link of a simulator";
+	case -EADDRINUSE:
+		return "another simulator has this port; end it, or choose another path. "
+		       "(If none is running, remove the link.)";
+	default:
+		return strerror(-error);
+	}
+}
+
 int main(int argc, char **argv)
 {
 	static struct simulator simulator; /* large: off the stack */
@@ -374,6 +387,12 @@ int main(int argc, char **argv)
 				strerror((int)-record_length));
 			return EXIT_FAILURE;
 		}
+	}
+	ret = simulator.options.storage != NULL ? sync_folder(simulator.options.storage) : 0;
+	if (ret) {
+		fprintf(stderr, "lw_sim: --storage %s: its folder: %s\n", simulator.options.storage,
+			strerror(-ret));
+		return EXIT_FAILURE;
 	}
 	if (simulator.options.trace != NULL) {
 		simulator.trace = fopen(simulator.options.trace, "w");
@@ -407,9 +426,7 @@ int main(int argc, char **argv)
 	line.format = (enum lw_line_format)simulator.world.device.line.line_format;
 	ret = lw_port_open(&simulator.port, simulator.options.port, line);
 	if (ret) {
-		fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.port,
-			ret == -EEXIST ? "exists and is neither a serial port nor a link"
-				       : strerror(-ret));
+		fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.port, port_error(ret));
 		return EXIT_FAILURE;
 	}
 	sigaction(SIGINT, &action, NULL);

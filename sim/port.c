@@ -11,14 +11,33 @@
 #include <termios.h>
 #include <unistd.h>
 
+/** A link to a pseudo terminal, alive or not: what a simulator makes, or has left behind. */
+static bool is_pty_link(const char *path)
+{
+	static const char folder[] = "/dev/pts/";
+	char target[sizeof(folder)] = "";
+
+	return readlink(path, target, sizeof(target) - 1) == (ssize_t)sizeof(target) - 1 &&
+	       strcmp(target, folder) == 0;
+}
+
+static bool links_to(const char *path, const char *expected)
+{
+	char target[128];
+	const ssize_t length = readlink(path, target, sizeof(target) - 1);
+
+	if (length < 0) {
+		return false;
+	}
+	target[length] = '\0';
+	return strcmp(target, expected) == 0;
+}
+
 bool lw_port_is_serial(const char *path)
 {
 	struct stat info;
 
-	/* A link left behind by a killed simulator points at a pty: not a port of ours to open. */
-	return lstat(path, &info) == 0 &&
-	       (S_ISCHR(info.st_mode) || (S_ISLNK(info.st_mode) && stat(path, &info) == 0 &&
-					  S_ISCHR(info.st_mode) && strncmp(path, "/dev/", 5) == 0));
+	return !is_pty_link(path) && stat(path, &info) == 0 && S_ISCHR(info.st_mode);
 }
 
 static speed_t speed_of(uint32_t baud)
@@ -46,6 +65,7 @@ static speed_t speed_of(uint32_t baud)
 static int open_serial(struct lw_port *port, const char *path, struct lw_port_line line)
 {
 	struct termios settings;
+	int ret;
 
 	port->fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
 	if (port->fd < 0) {
@@ -71,8 +91,9 @@ static int open_serial(struct lw_port *port, const char *path, struct lw_port_li
 	return 0;
 
 fail:
+	ret = -errno;
 	close(port->fd);
-	return -errno;
+	return ret;
 }
 
 static int make_link(struct lw_port *port, const char *target, const char *path)
@@ -80,10 +101,13 @@ static int make_link(struct lw_port *port, const char *target, const char *path)
 	struct stat info;
 
 	if (lstat(path, &info) == 0) {
-		if (!S_ISLNK(info.st_mode)) {
+		if (!is_pty_link(path)) {
 			return -EEXIST;
 		}
-		(void)unlink(path);
+		if (stat(path, &info) == 0 && !links_to(path, target)) {
+			return -EADDRINUSE;
+		}
+		(void)unlink(path); /* left behind by a simulator that was killed */
 	}
 	if ((size_t)snprintf(port->link, sizeof(port->link), "%s", path) >= sizeof(port->link)) {
 		return -ENAMETOOLONG;
@@ -137,19 +161,12 @@ int lw_port_open(struct lw_port *port, const char *path, struct lw_port_line lin
 
 void lw_port_close(struct lw_port *port)
 {
-	char target[128];
 	char own[128];
-	ssize_t length;
 
-	if (port->link[0] != '\0') {
-		/* Another simulator may have taken the name over. */
-		length = readlink(port->link, target, sizeof(target) - 1);
-		if (length > 0 && ptsname_r(port->fd, own, sizeof(own)) == 0) {
-			target[length] = '\0';
-			if (strcmp(target, own) == 0) {
-				(void)unlink(port->link);
-			}
-		}
+	/* Somebody may have put another port in its place. */
+	if (port->link[0] != '\0' && ptsname_r(port->fd, own, sizeof(own)) == 0 &&
+	    links_to(port->link, own)) {
+		(void)unlink(port->link);
 	}
 	if (port->client_fd >= 0) {
 		close(port->client_fd);

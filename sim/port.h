@@ -33,7 +33,8 @@ bool lw_port_is_serial(const char *path);
  * Open a serial port, or make a pseudo terminal and a link to it.
  *
  * @retval 0 done
- * @retval -EEXIST the path is something else than a serial port or a link
+ * @retval -EEXIST the path is something else than a serial port or a link to a pseudo terminal
+ * @retval -EADDRINUSE the path is a link to a pseudo terminal that is in use
  * @retval <0 another errno
  */
 int lw_port_open(struct lw_port *port, const char *path, struct lw_port_line line);

@@ -114,8 +114,11 @@ def test_save_that_fails_says_so(
     target: str, own_simulator: Callable[..., Simulator], tmp_path: Path
 ) -> None:
     if target != "sim":
-        pytest.skip("only the simulator's storage can be made to fail: its folder is missing")
-    running = own_simulator(tmp_path / "missing" / "parameters.bin")
+        pytest.skip("only the simulator's storage can be made to fail: its folder vanishes")
+    folder = tmp_path / "storage"
+    folder.mkdir()
+    running = own_simulator(folder / "parameters.bin")
+    folder.rmdir()
     slave = Slave(str(running.port))
     assert slave.command(Command.SAVE) == Result.FAILED
     assert slave.read("command_reason") == Reason.STORAGE_FAILED

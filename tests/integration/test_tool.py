@@ -246,6 +246,27 @@ def test_levelwind_sim_says_ready_and_ends_on_ctrl_c(tmp_path: Path) -> None:
     assert not port.is_symlink()
 
 
+def test_a_second_simulator_leaves_the_first_ones_port_alone(
+    target: str, own_simulator: Callable[..., Simulator]
+) -> None:
+    if target != "sim":
+        pytest.skip("only the simulator makes its port")
+    first = own_simulator()
+    second = subprocess.run(
+        [*LEVELWIND, "sim", "--port", str(first.port)],
+        env=environment(""),
+        capture_output=True,
+        text=True,
+        timeout=20,
+        check=False,
+    )
+    assert second.returncode == 1
+    assert "another simulator" in second.stderr
+    slave = Slave(str(first.port))
+    assert slave.read("self_test") == 0x12345678
+    slave.close()
+
+
 def test_the_demonstration(tmp_path: Path) -> None:
     done = subprocess.run(
         [*LEVELWIND, "demo", "--speed", "max", "--out", str(tmp_path)],

@@ -148,7 +148,7 @@ def test_jog_without_index_ends_at_the_switch(direction: int):
     world.run(0.5)
     assert world.state == State.UNINDEXED
     assert 78_400 <= abs(world.truth.carriage_um) < 82_000
-    with pytest.raises(RequestRefusedError, match="06, overtravel"):
+    with pytest.raises(RequestRefusedError, match="06, limit_switch"):
         world.write(jog=direction)
     hold_jog(world, -direction, 1.0)
     assert abs(world.truth.carriage_um) < 77_000

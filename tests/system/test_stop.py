@@ -1,8 +1,8 @@
 """STOP, and going on after it: from wherever the carriage was left, the slope comes out right."""
 
 import pytest
-from levelwind.map_table import Command, Fault, Mode, Result, State
-from world import PlantFault, World
+from levelwind.map_table import Command, Fault, Mode, Reason, Result, State
+from world import PlantFault, RequestRefusedError, World
 
 
 def follow(world: World) -> None:
@@ -110,3 +110,55 @@ def test_refused_trim_names_the_farthest_that_passes() -> None:
         world.write(trim_plus_um=limit)
         with pytest.raises(Exception, match="Modbus exception 03"):
             world.write(trim_plus_um=limit + (1 if wanted > 0 else -1))
+
+
+def test_stopped_is_told() -> None:
+    world = World().index()
+    assert "held" not in world.flags
+    world.command(Command.STOP)
+    assert "held" in world.flags
+    world.mode(Mode.TRACK)
+    assert "held" not in world.flags
+
+
+def test_commands_of_a_request_come_last() -> None:
+    """A trim that the staged set would refuse does not slip in beside its APPLY."""
+    world = World().index()
+    world.command(Command.STOP)
+    world.write(flange_plus_um=82_600)
+    world.write(command=Command.APPLY, mode=Mode.TRACK, jog=0, trim_plus_um=400, trim_minus_um=0)
+    assert world.value("command_result") == Result.DONE
+    assert world.value("trim_plus_um") == 0
+    assert world.value("reversal_plus_usteps") == 8_000
+
+
+def test_apply_under_a_turning_drum_waits_for_rest() -> None:
+    world = World()
+    world.drum(5_000)
+    world.run(1)
+    world.write(encoder_invert_a=1)
+    with pytest.raises(RequestRefusedError) as refused:
+        world.write(command=Command.APPLY)
+    assert refused.value.reason == Reason.DRUM_MOVING
+    world.write(encoder_invert_a=0, rope_per_drum_rev_um=2_000_000)
+    assert world.command(Command.APPLY) == Result.DONE
+
+
+def test_clear_fault_while_jogging_away_leaves_no_nameless_fault() -> None:
+    world = World().index()
+    world.write(bench_overtravel_minus=1)
+    world.run_until(lambda: world.state == State.FAULT)
+    world.write(jog=1)
+    world.run(0.1)
+    world.write(bench_overtravel_minus=0)
+    world.run(0.1)
+    world.command(Command.CLEAR_FAULT)
+    world.run_until(lambda: world.state != State.JOGGING)
+    assert (world.state, world.fault) == (State.UNINDEXED, Fault.NONE)
+
+
+def test_a_trim_may_not_break_the_debounce_rule() -> None:
+    world = World(switch_contacts=1).index()
+    with pytest.raises(RequestRefusedError):
+        world.write(trim_plus_um=-600)
+    assert world.value("last_error_reason") == Reason.DEBOUNCE_TOO_LONG

@@ -306,7 +306,7 @@ static void test_jog_without_an_index(void)
 	/* The switch is the limit. */
 	rig_run_to(LW_STATE_UNINDEXED);
 	TEST_ASSERT_INT32_WITHIN(260, 7840 + 250, rig.carriage_usteps);
-	assert_refused(LW_REASON_OVERTRAVEL, lw_controller_allow_jog(rig.controller, 1, &why));
+	assert_refused(LW_REASON_LIMIT_SWITCH, lw_controller_allow_jog(rig.controller, 1, &why));
 	TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_jog(rig.controller, -1, &why));
 	lw_controller_jog(rig.controller, -1, rig.now_us);
 	rig_ticks(300);

@@ -19,7 +19,7 @@ static void require(const struct levelwind_client *client, int error)
 
 int main(int argc, char **argv)
 {
-	struct levelwind_client client;
+	struct levelwind_client client = {0};
 	struct levelwind_status status;
 	struct levelwind_line line = {0};
 

@@ -125,6 +125,10 @@ static const struct levelwind_value reason_values[] = {
 	{20, "faulted", "Ended by a fault, see the register fault"},
 	{21, "undefined_sub_function", "This sub-function or object is not supported"},
 	{
+		22, "limit_switch",
+		"The limit switch on that side is actuated: without an index only motion away from it is allowed",
+	},
+	{
 		30, "slope_above_one_step",
 		"The pitch asks for more than one step per encoder edge: finer encoder edges, fewer microsteps or a smaller pitch",
 	},
@@ -256,6 +260,7 @@ static const struct levelwind_value flag_values[] = {
 		26, "restart_needed",
 		"The active line settings differ from those in use: SAVE and restart",
 	},
+	{27, "held", "Stopped by command: write the mode, or index, to go on"},
 };
 
 static const struct levelwind_value launch_inhibit_values[] = {
@@ -666,7 +671,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "All discrete inputs in one pair, bit number = discrete input address",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 103,
 		.words = 2, .offset = offsetof(struct levelwind_status, flags),
-		.values = flag_values, .value_count = 27,
+		.values = flag_values, .value_count = 28,
 	},
 	{
 		.name = "launch_inhibit", .unit = "",
@@ -868,7 +873,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_reason", .unit = "", .text = "Why it was refused or failed",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 403,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_reason),
-		.values = reason_values, .value_count = 39,
+		.values = reason_values, .value_count = 40,
 	},
 	{
 		.name = "command_address", .unit = "",
@@ -891,7 +896,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Why the last refused request was refused", .block = LEVELWIND_BLOCK_STATUS,
 		.type = LEVELWIND_TYPE_U16, .address = 410, .words = 1,
 		.offset = offsetof(struct levelwind_status, last_error_reason),
-		.values = reason_values, .value_count = 39,
+		.values = reason_values, .value_count = 40,
 	},
 	{
 		.name = "last_error_function", .unit = "", .text = "Its function code",

@@ -184,6 +184,11 @@ enum levelwind_reason {
 	/** This sub-function or object is not supported */
 	LEVELWIND_REASON_UNDEFINED_SUB_FUNCTION = 21,
 	/**
+	 * The limit switch on that side is actuated: without an index only motion away from it is
+	 * allowed
+	 */
+	LEVELWIND_REASON_LIMIT_SWITCH = 22,
+	/**
 	 * The pitch asks for more than one step per encoder edge: finer encoder edges, fewer
 	 * microsteps or a smaller pitch
 	 */
@@ -342,6 +347,8 @@ enum levelwind_flag {
 	LEVELWIND_FLAG_STEPPER_ENABLED = 25,
 	/** The active line settings differ from those in use: SAVE and restart */
 	LEVELWIND_FLAG_RESTART_NEEDED = 26,
+	/** Stopped by command: write the mode, or index, to go on */
+	LEVELWIND_FLAG_HELD = 27,
 };
 
 /** Bit numbers of levelwind_status.launch_inhibit */

@@ -756,6 +756,7 @@ const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT] = {
 	{.address = 24, .count = 1, .offset = 24, .type = LW_TYPE_BIT},
 	{.address = 25, .count = 1, .offset = 25, .type = LW_TYPE_BIT},
 	{.address = 26, .count = 1, .offset = 26, .type = LW_TYPE_BIT},
+	{.address = 27, .count = 1, .offset = 27, .type = LW_TYPE_BIT},
 };
 
 const uint8_t lw_map_coil_command[LW_MAP_COILS_COUNT] = {

@@ -292,19 +292,34 @@ static int ask_owner(struct request *request, const struct place *place, uint32_
 	return section->allow(section->context, place->point, place->element, value, request->why);
 }
 
-static int store(struct request *request, const struct place *place, uint32_t address)
+static int store(struct request *request, const struct place *place, uint32_t address,
+		 bool commands)
 {
 	const struct lw_bank_section *section = place->section;
 	int32_t value = signed_value(place, wire_value(request, place, address));
 
-	section->store(section->context, place->point, place->element, value);
+	if (((place->point->flags & LW_POINT_COMMAND) != 0) == commands) {
+		section->store(section->context, place->point, place->element, value);
+	}
 	return 0;
+}
+
+/* What a command works on may stand in the same request, before or behind it. */
+static int store_values(struct request *request, const struct place *place, uint32_t address)
+{
+	return store(request, place, address, false);
+}
+
+static int store_commands(struct request *request, const struct place *place, uint32_t address)
+{
+	return store(request, place, address, true);
 }
 
 static int write_all(const struct lw_bank *bank, enum lw_space space, uint16_t address,
 		     uint16_t count, const uint8_t *in, struct lw_refusal *why)
 {
-	static const stage_function stages[] = {check_writable, check_value, ask_owner, store};
+	static const stage_function stages[] = {check_writable, check_value, ask_owner,
+						store_values, store_commands};
 	struct request request = {
 		.bank = bank,
 		.space = space,

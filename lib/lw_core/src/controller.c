@@ -320,6 +320,9 @@ void lw_controller_clear_fault(struct lw_controller *controller)
 	if (controller->state == LW_STATE_FAULT) {
 		controller->state = LW_STATE_UNINDEXED;
 	}
+	if (controller->rest_state == LW_STATE_FAULT) {
+		controller->rest_state = LW_STATE_UNINDEXED; /* a jog is under way */
+	}
 }
 
 void lw_controller_set_mode(struct lw_controller *controller, enum lw_mode mode)
@@ -351,9 +354,11 @@ int lw_controller_allow_jog(const struct lw_controller *controller, int directio
 	if (controller->state == LW_STATE_TRACKING && !controller->drum_at_rest) {
 		return busy(why, LW_REASON_BUSY_TRACKING);
 	}
-	if (controller->overtravel[side] ||
-	    (!controller->indexed && controller->limit[side].active)) {
+	if (controller->overtravel[side]) {
 		return busy(why, LW_REASON_OVERTRAVEL);
+	}
+	if (!controller->indexed && controller->limit[side].active) {
+		return busy(why, LW_REASON_LIMIT_SWITCH);
 	}
 	return 0;
 }

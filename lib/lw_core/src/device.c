@@ -16,6 +16,16 @@ static void stage_factory(struct lw_device *device, bool motion, bool line)
 	}
 }
 
+/** What decodes the encoder must not change under its interrupt. */
+static bool decoding_differs(const struct lw_params *a, const struct lw_params *b)
+{
+	const struct lw_quadrature_config old = lw_params_quadrature(a);
+	const struct lw_quadrature_config fresh = lw_params_quadrature(b);
+
+	return old.edges_per_pulse != fresh.edges_per_pulse || old.invert_a != fresh.invert_a ||
+	       old.invert_b != fresh.invert_b || old.invert_direction != fresh.invert_direction;
+}
+
 int lw_device_allow_command(const struct lw_device *device, enum lw_command command,
 			    struct lw_refusal *why)
 {
@@ -33,6 +43,12 @@ int lw_device_allow_command(const struct lw_device *device, enum lw_command comm
 		}
 		return lw_controller_busy(controller, why);
 	case LW_COMMAND_APPLY:
+		if (!controller->drum_at_rest &&
+		    decoding_differs(&device->active, &device->staged)) {
+			why->reason = LW_REASON_DRUM_MOVING;
+			return -EBUSY;
+		}
+		return lw_controller_busy(controller, why);
 	case LW_COMMAND_REVERT:
 	case LW_COMMAND_FACTORY_MOTION:
 	case LW_COMMAND_FACTORY_LINE:
@@ -65,7 +81,7 @@ static void apply(struct lw_device *device)
 
 	const bool need_index = lw_params_need_index(&device->active, &device->staged);
 
-	/* The interrupts work on the controller's own copies, and nothing moves now. */
+	/* Nothing moves now: the interrupts only count edges, by the controller's own copies. */
 	device->active = device->staged;
 	device->derived = derived;
 	lw_controller_configure(&device->controller, &device->active, &device->derived, need_index);

@@ -44,6 +44,7 @@ static uint32_t flags(const struct lw_device *device, uint16_t launch_inhibit)
 				   controller->motion.requests & LW_MOTION_REQUEST_WINDOW);
 	FLAG(CORRECTION_PENDING, (controller->motion.requests & LW_MOTION_REQUEST_CORRECTION) != 0);
 	FLAG(STEPPER_ENABLED, lw_controller_stepper_enabled(controller));
+	FLAG(HELD, controller->held);
 	FLAG(RESTART_NEEDED, device->active.unit_id != device->line.unit_id ||
 				     device->active.baud_rate != device->line.baud_rate ||
 				     device->active.line_format != device->line.line_format);

@@ -192,6 +192,30 @@ static int refuse_reversal(const struct lw_params *params, struct lw_refusal *wh
 					params->reversal_minus_um, limit_um);
 }
 
+/**
+ * A single contact tells late. Its event must come before the reversal begins, where indexing turns
+ * round and where a switch that has not triggered counts as lost synchronization.
+ */
+static int check_debounce(const struct lw_params *params, const struct lw_derived *derived,
+			  struct lw_refusal *why)
+{
+	const int64_t index_rate = params->index_rate_edges_per_s;
+	const int64_t top_rate = (int64_t)params->overspeed_warning_edges_per_s;
+	const int64_t q16_per_s = derived->ks * (top_rate > index_rate ? top_rate : index_rate);
+	const int64_t plus_usteps = derived->reversal_plus_usteps - derived->switch_usteps[LW_PLUS];
+	const int64_t minus_usteps =
+		derived->switch_usteps[LW_MINUS] - derived->reversal_minus_usteps;
+	const int64_t room_q16 =
+		(plus_usteps < minus_usteps ? plus_usteps : minus_usteps) * LW_USTEP;
+
+	if (params->switch_contacts != LW_SWITCH_CONTACTS_NO_NC_PAIR &&
+	    q16_per_s * params->switch_debounce_ms >= room_q16 * 1000) {
+		return refuse(why, LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS,
+			      params->switch_debounce_ms, (room_q16 * 1000 - 1) / q16_per_s);
+	}
+	return 0;
+}
+
 /** The rules that bind reversal points, switches and flanges; also for a trim. */
 static int check_geometry(const struct lw_params *params, const struct lw_derived *derived,
 			  struct lw_refusal *why)
@@ -239,7 +263,7 @@ static int check_geometry(const struct lw_params *params, const struct lw_derive
 			      LW_ADDRESS_FLANGE_MINUS_UM, params->flange_minus_um,
 			      um_at_most(params, minus - reach));
 	}
-	return 0;
+	return check_debounce(params, derived, why);
 }
 
 /** The largest Nr whose overshoot fits into so many microsteps. */
@@ -251,30 +275,6 @@ static int32_t largest_nr(int32_t ka, int32_t room_usteps)
 		nr++;
 	}
 	return nr;
-}
-
-/**
- * A single contact tells late. Its event must come before the reversal begins, where indexing turns
- * round and where a switch that has not triggered counts as lost synchronization.
- */
-static int check_debounce(const struct lw_params *params, const struct lw_derived *derived,
-			  struct lw_refusal *why)
-{
-	const int64_t index_rate = params->index_rate_edges_per_s;
-	const int64_t top_rate = (int64_t)params->overspeed_warning_edges_per_s;
-	const int64_t q16_per_s = derived->ks * (top_rate > index_rate ? top_rate : index_rate);
-	const int64_t plus_usteps = derived->reversal_plus_usteps - derived->switch_usteps[LW_PLUS];
-	const int64_t minus_usteps =
-		derived->switch_usteps[LW_MINUS] - derived->reversal_minus_usteps;
-	const int64_t room_q16 =
-		(plus_usteps < minus_usteps ? plus_usteps : minus_usteps) * LW_USTEP;
-
-	if (params->switch_contacts != LW_SWITCH_CONTACTS_NO_NC_PAIR &&
-	    q16_per_s * params->switch_debounce_ms >= room_q16 * 1000) {
-		return refuse(why, LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS,
-			      params->switch_debounce_ms, (room_q16 * 1000 - 1) / q16_per_s);
-	}
-	return 0;
 }
 
 /** Rules for switches, ramps, parking and travel that a trim cannot break. */
@@ -345,7 +345,7 @@ static int check_motion(const struct lw_params *params, const struct lw_derived 
 			      params->overspeed_warning_edges_per_s,
 			      params->overspeed_trip_edges_per_s);
 	}
-	return check_debounce(params, derived, why);
+	return 0;
 }
 
 int lw_params_derive(const struct lw_params *params, struct lw_derived *derived,

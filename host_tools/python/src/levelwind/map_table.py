@@ -195,6 +195,11 @@ class Reason(MapEnum):
         "undefined_sub_function",
         "This sub-function or object is not supported",
     )
+    LIMIT_SWITCH = (
+        22,
+        "limit_switch",
+        "The limit switch on that side is actuated: without an index only motion away from it is allowed",
+    )
     SLOPE_ABOVE_ONE_STEP = (
         30,
         "slope_above_one_step",
@@ -424,6 +429,7 @@ class Flag(MapEnum):
         "restart_needed",
         "The active line settings differ from those in use: SAVE and restart",
     )
+    HELD = 27, "held", "Stopped by command: write the mode, or index, to go on"
 
 
 class LaunchInhibit(MapEnum):
@@ -793,6 +799,14 @@ POINTS: dict[str, Point] = {
             space="discrete",
             type="bit",
             text="The active line settings differ from those in use: SAVE and restart",
+            block="discretes",
+        ),
+        Point(
+            name="held",
+            address=27,
+            space="discrete",
+            type="bit",
+            text="Stopped by command: write the mode, or index, to go on",
             block="discretes",
         ),
         Point(

@@ -193,6 +193,11 @@ enum lw_reason {
 	/** This sub-function or object is not supported */
 	LW_REASON_UNDEFINED_SUB_FUNCTION = 21,
 	/**
+	 * The limit switch on that side is actuated: without an index only motion away from it is
+	 * allowed
+	 */
+	LW_REASON_LIMIT_SWITCH = 22,
+	/**
 	 * The pitch asks for more than one step per encoder edge: finer encoder edges, fewer
 	 * microsteps or a smaller pitch
 	 */
@@ -403,6 +408,8 @@ enum lw_flag {
 	LW_FLAG_STEPPER_ENABLED = 25,
 	/** The active line settings differ from those in use: SAVE and restart */
 	LW_FLAG_RESTART_NEEDED = 26,
+	/** Stopped by command: write the mode, or index, to go on */
+	LW_FLAG_HELD = 27,
 };
 
 /** Bit numbers of lw_status.launch_inhibit */
@@ -975,7 +982,7 @@ extern const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT];
 /** Coils, indexed by address */
 extern const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT];
 
-#define LW_MAP_DISCRETES_COUNT 27
+#define LW_MAP_DISCRETES_COUNT 28
 
 /** Discrete inputs, indexed by address */
 extern const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT];

@@ -53,7 +53,9 @@ struct lw_bank_section {
 	int (*allow)(void *context, const struct lw_point *point, uint16_t element, int32_t value,
 		     struct lw_refusal *why);
 
-	/** Take one allowed value. Cannot fail. Called in ascending address order. NULL: read only.
+	/**
+	 * Take one allowed value. Cannot fail. Called in ascending address order, but for commands
+	 * after everything else. NULL: read only.
 	 */
 	void (*store)(void *context, const struct lw_point *point, uint16_t element, int32_t value);
 };
