@@ -20,11 +20,13 @@ def written(folder: Path, document: object) -> Path:
 
 
 def document(**changes: object) -> dict[str, object]:
-    return {"levelwind_backup": MAP_VERSION, "parameters": DEFAULTS | changes}
+    return {"levelwind_backup": MAP_VERSION, "firmware": "1.2.3", "parameters": DEFAULTS | changes}
 
 
 def test_a_backup_comes_back_with_names_for_enumerations(tmp_path: Path):
-    values = backups.read(written(tmp_path, document(index_switch="minus", pitch_um=11_000)))
+    values = backups.read(
+        written(tmp_path, document(index_switch="minus", pitch_um=11_000)), "1.2.3"
+    )
     assert values == {p.name: p.default for p in PARAMETERS} | {
         "index_switch": 1,
         "pitch_um": 11_000,
@@ -44,4 +46,14 @@ def test_a_backup_comes_back_with_names_for_enumerations(tmp_path: Path):
 )
 def test_mistakes_are_named(tmp_path: Path, content: object, message: str):
     with pytest.raises(ToolError, match=message):
-        backups.read(written(tmp_path, content))
+        backups.read(written(tmp_path, content), "1.2.3")
+
+
+@pytest.mark.parametrize(("firmware", "lines"), [("1.2.3", 0), ("1.3.0", 1)])
+def test_other_firmware_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], firmware: str, lines: int
+):
+    backups.read(written(tmp_path, document()), firmware)
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == lines
+    assert ("firmware 1.2.3, this controller has 1.3.0" in said) == bool(lines)

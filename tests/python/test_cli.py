@@ -107,6 +107,28 @@ def test_plan_takes_millimetres_and_registers(tmp_path: Path):
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_plan_sets_what_was_given_also_where_it_is_the_factory_value():
+    shown = levelwind("plan", "--pitch-mm", "12", "--overshoot-mm", "2", "--ratio", "4/1").stdout
+    assert shown.splitlines()[-1] == (
+        "levelwind set pitch_um=12000 overshoot_um=2000 "
+        "encoder_ratio_numerator=4 encoder_ratio_denominator=1"
+    )
+
+
+def test_plan_shows_a_ratio_as_example_for_a_ratio():
+    assert "as in 4/1" in levelwind("plan", "--ratio", "4").stderr
+
+
+def test_demo_into_a_file_is_one_line(tmp_path: Path):
+    path = tmp_path / "file"
+    path.touch()
+    result = levelwind("demo", "--out", str(path))
+    assert result.exit_code == 1
+    assert result.stderr.splitlines() == [
+        f"levelwind: --out {path}: no folder can be made there: File exists."
+    ]
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

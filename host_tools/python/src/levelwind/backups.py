@@ -9,18 +9,23 @@ from levelwind import yaml_file
 from levelwind.device import Device
 from levelwind.errors import ToolError
 from levelwind.map_table import MAP_VERSION
-from levelwind.output import json_value
+from levelwind.output import json_value, warn
 from levelwind.parameter_sets import read_set
 from levelwind.points import PARAMETERS, parse_value
+
+
+def read_firmware(device: Device) -> str:
+    """The version of the connected controller."""
+    version = device.read_names("version_major", "version_minor", "version_patch")
+    return ".".join(map(str, version.values()))
 
 
 def write(device: Device, copy: str, path: Path) -> None:
     """Save one of the three sets."""
     values = read_set(device, copy)
-    version = device.read_names("version_major", "version_minor", "version_patch")
     document = {
         "levelwind_backup": MAP_VERSION,
-        "firmware": ".".join(map(str, version.values())),
+        "firmware": read_firmware(device),
         "saved": time.strftime("%Y-%m-%d %H:%M:%S"),
         "parameters": {p.name: json_value(p, values[p.name]) for p in PARAMETERS},
     }
@@ -30,8 +35,11 @@ def write(device: Device, copy: str, path: Path) -> None:
         raise ToolError(f"{path}: {error.strerror}.") from error
 
 
-def read(path: Path) -> dict[str, int]:
-    """All parameters of a backup, every one checked against its limits."""
+def read(path: Path, firmware: str) -> dict[str, int]:
+    """All parameters of a backup, every one checked against its limits.
+
+    Warns if the backup is from another version than `firmware`, the connected controller's.
+    """
     document = yaml_file.load(path)
     if not isinstance(document, dict) or "levelwind_backup" not in document:
         raise ToolError(f"{path} is no backup made by `levelwind backup`.")
@@ -39,6 +47,9 @@ def read(path: Path) -> dict[str, int]:
         raise ToolError(
             f"{path} has map version {document['levelwind_backup']}, this tool {MAP_VERSION}."
         )
+    made_with = document.get("firmware", "unknown")
+    if made_with != firmware:
+        warn(f"{path} is from firmware {made_with}, this controller has {firmware}.")
     given = document.get("parameters")
     if not isinstance(given, dict):
         raise ToolError(f"{path}: the mapping `parameters` is missing.")

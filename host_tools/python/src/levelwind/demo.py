@@ -34,7 +34,10 @@ class Expectation:
 
 def run_demo(out: Path, speed: str, stay: bool) -> bool:
     """Run it all; True if every expectation held."""
-    out.mkdir(parents=True, exist_ok=True)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ToolError(f"--out {out}: no folder can be made there: {error.strerror}.") from error
     port = str((out / "levelwind-port").absolute())
     trace_path = out / "launch_trace.csv"
     began = time.monotonic()

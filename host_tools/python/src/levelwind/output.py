@@ -15,6 +15,11 @@ from levelwind.points import format_value, set_bits
 console = Console(highlight=False, width=None if sys.stdout.isatty() else 140)
 
 
+def warn(text: str) -> None:
+    """One line on standard error; the command goes on."""
+    print(f"levelwind: {text}", file=sys.stderr)
+
+
 def print_json(value: object) -> None:
     """One JSON document, and nothing else, on standard output."""
     print(json.dumps(value, indent=2))

@@ -53,10 +53,6 @@ class Plan:
         plus, minus = (self.parameters[f"{place}_{side}_um"] for side in ("plus", "minus"))
         return plus / 1000, minus / 1000
 
-    def changed(self) -> dict[str, int]:
-        """Parameters that differ from the factory values."""
-        return {p.name: v for p in PARAMETERS if (v := self.parameters[p.name]) != p.default}
-
     def rates(self) -> dict[str, float]:
         """Speeds and times at the rope speed."""
         revs_per_s = self.rope_speed_m_per_s * 1e6 / self.parameters["rope_per_drum_rev_um"]

@@ -17,17 +17,15 @@ LIVE_REFRESH_S = 0.25
 Recording = list[dict[str, Any]]
 
 
-def record(device: Device, seconds: float, live: bool) -> Recording:
-    """Read the live status about 20 times a second; `live` draws it in a window meanwhile."""
+def record(device: Device, seconds: float, live: bool, recording: Recording) -> None:
+    """Append the live status about 20 times a second; `live` draws it in a window meanwhile."""
     window = _Window() if live else None
-    recording: Recording = []
     began = time.monotonic()
     while (now := time.monotonic() - began) < seconds:
         recording.append(_row(now, read_live(device)))
         if window is not None and not window.update(recording):
             break
         time.sleep(max(0.0, began + len(recording) * PERIOD_S - time.monotonic()))
-    return recording
 
 
 def _row(time_s: float, status: Mapping[str, int]) -> dict[str, Any]:

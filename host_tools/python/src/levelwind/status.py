@@ -21,6 +21,7 @@ LOS_POINTS = [
 ]
 STATE_STYLES = {State.TRACKING: "green", State.READY: "cyan", State.FAULT: "red"}
 NOTICES = (
+    Flag.HELD,
     Flag.MASTER_LOST,
     Flag.OVERSPEED_WARNING,
     Flag.OVERSPEED_TRIP,

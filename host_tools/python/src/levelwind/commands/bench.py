@@ -9,8 +9,10 @@ from rich.progress import Progress
 from levelwind import launches, profiles, simulator
 from levelwind.connection import PORT_DEFAULT, Json, Port, with_device
 from levelwind.device import Device
-from levelwind.output import console, print_json, print_table
+from levelwind.map_table import State
+from levelwind.output import console, print_json, print_table, warn
 from levelwind.plant import check_plant
+from levelwind.points import enum_label
 
 Speed = Annotated[str | None, typer.Option("--speed", help="Factor of real time, or max.")]
 
@@ -41,6 +43,9 @@ def launch(
     check_plant(device)
     points = profiles.read(profile, launches.read_gearing(device, motor_per_encoder))
     launches.upload(device, points)
+    state = device.value("state")
+    if state != State.TRACKING:
+        warn(f"the state is {enum_label(State, state)}: the carriage will not follow the drum.")
     with Progress(
         console=console, transient=True, disable=json_output or not console.is_terminal
     ) as progress:

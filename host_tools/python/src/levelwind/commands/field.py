@@ -36,7 +36,7 @@ def restore(
     save: Annotated[bool, typer.Option("--save", help="Store them too.")] = False,
 ) -> None:
     """Make the parameters of a backup active, all or none."""
-    values = backups.read(file)
+    values = backups.read(file, backups.read_firmware(device))
     replace_set(device, values)
     if save:
         device.command(Command.SAVE)

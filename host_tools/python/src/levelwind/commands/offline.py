@@ -9,15 +9,17 @@ import typer
 from levelwind import native, planning
 from levelwind.connection import Json
 from levelwind.errors import ToolError
-from levelwind.output import console, print_json, print_table
+from levelwind.output import print_json, print_table
 from levelwind.points import parse_assignments
 
 Plot = Annotated[Path | None, typer.Option("--plot", help="Picture to write.")]
 TRACE_POINTS = 20_000
 
 
-def _pair(text: str | None, name: str, kind: type) -> tuple[float, float] | tuple[None, None]:
-    """Two numbers with a slash between, as in +80/-80."""
+def _pair(
+    text: str | None, name: str, kind: type, example: str
+) -> tuple[float, float] | tuple[None, None]:
+    """Two numbers with a slash between, as in the example."""
     if text is None:
         return None, None
     try:
@@ -25,7 +27,7 @@ def _pair(text: str | None, name: str, kind: type) -> tuple[float, float] | tupl
         return kind(first), kind(second)
     except ValueError:
         raise typer.BadParameter(
-            f"{text!r}: give two numbers, as in 80/-80", param_hint=name
+            f"{text!r}: give two numbers, as in {example}", param_hint=name
         ) from None
 
 
@@ -51,10 +53,10 @@ def plan(
     json_output: Json = False,
 ) -> None:
     """Millimetres in, registers out: what the core makes of a parameter set, or why it refuses."""
-    numerator, denominator = _pair(ratio, "--ratio", int)
-    reversal_plus, reversal_minus = _pair(reversal_mm, "--reversal-mm", float)
-    flange_plus, flange_minus = _pair(flange_mm, "--flange-mm", float)
-    switch_plus, switch_minus = _pair(switch_mm, "--switch-mm", float)
+    numerator, denominator = _pair(ratio, "--ratio", int, "4/1")
+    reversal_plus, reversal_minus = _pair(reversal_mm, "--reversal-mm", float, "80/-80")
+    flange_plus, flange_minus = _pair(flange_mm, "--flange-mm", float, "82.5/-82.5")
+    switch_plus, switch_minus = _pair(switch_mm, "--switch-mm", float, "78/-78")
     in_mm = {
         "pitch_um": pitch_mm,
         "screw_lead_um": lead_mm,
@@ -76,16 +78,18 @@ def plan(
     }
     given = {name: round(mm * 1000) for name, mm in in_mm.items() if mm is not None}
     given |= {name: value for name, value in plain.items() if value is not None}
-    result = planning.plan(planning.check(given) | parse_assignments(assignments or []), rope_speed)
+    # Factory values that were given are set too: the controller may hold others.
+    changes = planning.check(given) | parse_assignments(assignments or [])
+    result = planning.plan(changes, rope_speed)
     if plot is not None:
         planning.plot(result, plot)
     if json_output:
         print_json(result.document())
         return
     print_table(("quantity", "value>", "unit", ""), result.rows())
-    changed = result.changed()
-    if changed:
-        console.print("\nlevelwind set " + " ".join(f"{n}={v}" for n, v in changed.items()))
+    if changes:
+        # Not through the console, which would break the line: it is there to be copied.
+        print("\nlevelwind set " + " ".join(f"{n}={v}" for n, v in changes.items()))
 
 
 def replay(

@@ -108,12 +108,14 @@ def index(device: Device) -> None:
 def stop(device: Device) -> None:
     """Stop every motion now."""
     device.command(Command.STOP)
+    console.print("Stop accepted. It holds until `levelwind mode` or `levelwind index`.")
 
 
 @with_device
 def clear_fault(device: Device) -> None:
     """Acknowledge a fault whose cause is gone. Indexing is needed afterwards."""
     device.command(Command.CLEAR_FAULT)
+    console.print("No fault stands. Position unknown? `levelwind index`.")
 
 
 @with_device
@@ -139,9 +141,14 @@ def jog(
     seconds: Annotated[float, typer.Option("--for", help="Seconds.", min=0.05)] = 1.0,
 ) -> None:
     """Move the carriage by hand. Ctrl-C, or losing the line, stops it."""
-    hold_jog(device, direction, seconds)
+    why = hold_jog(device, direction, seconds)
     live = read_live(device)
-    console.print(f"{enum_label(State, live['state'])} at {live['position_um'] / 1000:+.2f} mm")
+    place = f"{live['position_um'] / 1000:+.2f} mm"
+    if flag(live, Flag.INDEXED):
+        place = f"at {place}"
+    else:
+        place = f"{place} from where the jog began (position unknown)"
+    console.print(f"{enum_label(State, live['state'])}, {place}{f'; {why}' if why else ''}")
 
 
 @with_device
@@ -174,12 +181,17 @@ def watch(
     seconds: Annotated[float, typer.Option(help="How long.", min=0.1)] = 10.0,
     csv: Annotated[Path | None, typer.Option(help="Table to write.")] = None,
 ) -> None:
-    """Record position, speeds and flags over time."""
+    """Record position, speeds and flags over time. Ctrl-C keeps what was recorded."""
     if plot is None and csv is None:
         raise ToolError("Say where to: --plot FILE.png, --plot live or --csv FILE.")
-    recording = recorder.record(device, seconds, live=plot == "live")
-    if csv is not None:
-        recorder.write_csv(recording, csv)
-    if plot not in (None, "live"):
-        recorder.write_plot(recording, Path(plot))
-    console.print(f"{len(recording)} records in {seconds:g} s.")
+    recording: recorder.Recording = []
+    try:
+        recorder.record(device, seconds, plot == "live", recording)
+    finally:  # also what Ctrl-C or a lost line cut short
+        if recording:
+            if csv is not None:
+                recorder.write_csv(recording, csv)
+            if plot not in (None, "live"):
+                recorder.write_plot(recording, Path(plot))
+        taken_s = recording[-1]["time_s"] if recording else 0
+        console.print(f"{len(recording)} records in {taken_s:.1f} s.")

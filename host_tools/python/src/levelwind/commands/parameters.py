@@ -11,6 +11,7 @@ from levelwind.errors import ToolError
 from levelwind.map_table import POINTS, Command, Point
 from levelwind.output import console, json_value, print_csv, print_json, print_table
 from levelwind.parameter_sets import COPIES, read_sets
+from levelwind.plant import write_plant
 from levelwind.points import (
     PARAMETERS,
     format_value,
@@ -82,9 +83,14 @@ def set_values(
     for name in values:
         if POINTS[name].space != "holding":
             raise ToolError(f"{name} is a coil: give its command instead of setting it.")
-    device.write(values)
+    if any(POINTS[name].block == "bench" for name in values):
+        write_plant(device, values)
+    else:
+        device.write(values)
     if any(POINTS[name].mirrors for name in values):
         console.print("Staged. `levelwind apply` makes it active.")
+    else:
+        console.print("Written.")
 
 
 @with_device
@@ -100,6 +106,7 @@ def apply(device: Device) -> None:
 def revert(device: Device) -> None:
     """Drop the staged parameters: staged becomes active again."""
     device.command(Command.REVERT)
+    console.print("Reverted: staged equals active.")
 
 
 @with_device

@@ -1,0 +1,127 @@
+"""Commands for the operator, on registers in a dictionary."""
+
+from pathlib import Path
+
+import pytest
+from levelwind import device as device_module
+from levelwind import launches, motion, recorder
+from levelwind.cli import app
+from levelwind.map_table import POINTS, Flag, State
+from levelwind.status import Travel, render
+from python.fake_client import FakeClient
+from typer.testing import CliRunner
+
+
+class Controller(FakeClient):
+    """Refuses to go on jogging, and comes to rest a few looks later."""
+
+    values: dict[str, int] = {}  # noqa: RUF012
+    jogs = 0
+    looks_until_rest = 3
+
+    def __init__(self, port: str, **options: object) -> None:
+        super().__init__(port, **options)
+        for name, value in self.values.items():
+            self.put(name, value)
+
+    def write_registers(self, address: int, values: list[int], **options: object):
+        answer = super().write_registers(address, values, **options)
+        if address == POINTS["jog"].address and values != [0]:
+            self.put("state", State.JOGGING)
+            self.jogs += 1
+            if self.jogs > 1:
+                answer.isError = lambda: True
+                answer.exception_code = 6
+                self.put("last_error_exception", 6)
+        return answer
+
+    def read_input_registers(self, address: int, count: int, device_id: int):
+        if self.jogs > 1 and address == 100:
+            self.looks_until_rest -= 1
+            if self.looks_until_rest == 0:
+                self.put("state", State.UNINDEXED)
+        return super().read_input_registers(address, count, device_id)
+
+
+@pytest.fixture(autouse=True)
+def controller(monkeypatch: pytest.MonkeyPatch) -> type[Controller]:
+    monkeypatch.setattr(device_module, "ModbusSerialClient", Controller)
+    monkeypatch.setattr(device_module, "_check_port", lambda port: None)
+    monkeypatch.setattr(Controller, "values", {})
+    monkeypatch.setattr(motion, "JOG_REWRITE_S", 0)
+    monkeypatch.setattr(motion, "REST_POLL_S", 0)
+    return Controller
+
+
+def levelwind(*arguments: str):
+    return CliRunner().invoke(app, list(arguments))
+
+
+@pytest.mark.parametrize(
+    "arguments", [["stop"], ["clear-fault"], ["revert"], ["set", "bench_drum_speed_millirpm=1"]]
+)
+def test_what_was_done_is_said_in_one_line(arguments: list[str]):
+    result = levelwind(*arguments)
+    assert result.exit_code == 0, result.output
+    assert len(result.stdout.splitlines()) == 1
+
+
+def test_a_refused_bench_set_is_told(controller: type[Controller]):
+    controller.values["bench_result"] = 22
+    result = levelwind("set", "bench_drum_speed_millirpm=1")
+    assert result.exit_code == 1
+    assert "The plant refused" in result.stderr
+
+
+def test_jog_waits_for_rest_and_names_the_switch(controller: type[Controller]):
+    controller.values |= {"flags": 1 << Flag.SWITCH_MINUS, "position_um": -12_340}
+    result = levelwind("jog", "minus", "--for", "60")
+    assert result.exit_code == 0
+    assert result.stdout == (
+        "unindexed, -12.34 mm from where the jog began (position unknown); "
+        "stopped by the minus limit switch\n"
+    )
+
+
+def test_watch_keeps_what_was_recorded_before_ctrl_c(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+):
+    looks = []
+
+    def interrupted(device: object) -> dict[str, int]:
+        looks.append(1)
+        if len(looks) > 2:
+            raise KeyboardInterrupt
+        return {"state": 0, "position_um": 5}
+
+    monkeypatch.setattr(recorder, "read_live", interrupted)
+    table = tmp_path / "table.csv"
+    assert levelwind("watch", "--csv", str(table)).exit_code == 130
+    assert len(table.read_text().splitlines()) == 3
+
+
+@pytest.mark.parametrize(("state", "lines"), [(State.UNINDEXED, 1), (State.TRACKING, 0)])
+def test_launch_warns_if_the_carriage_will_not_follow(
+    controller: type[Controller],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    state: State,
+    lines: int,
+):
+    controller.values["state"] = state
+    monkeypatch.setattr(launches, "read_gearing", lambda *_: None)
+    monkeypatch.setattr(launches, "upload", lambda *_: None)
+    monkeypatch.setattr("levelwind.profiles.read", lambda *_: [])
+    end = dict.fromkeys(POINTS, 0)
+    monkeypatch.setattr(launches, "play", lambda *_: launches.Launch(end, end))
+    result = levelwind("launch", str(tmp_path), "--json")
+    assert result.exit_code == 0, result.output
+    assert len(result.stderr.splitlines()) == lines
+    assert ("will not follow" in result.stderr) == bool(lines)
+
+
+@pytest.mark.parametrize("bit", [Flag.HELD, Flag.DIRTY])
+def test_notices_are_the_texts_of_the_map(bit: Flag):
+    status = dict.fromkeys(POINTS, 0) | {"flags": 1 << bit}
+    rows = render(status, Travel(-1, -1, 1, 1)).renderable.renderables[2]
+    assert bit.text in str(list(rows.columns[1].cells)[-1])
