@@ -87,6 +87,9 @@ void lw_controller_init(struct lw_controller *controller, const struct lw_params
 		.rest_since_us = now_us,
 		.now_us = now_us,
 	};
+	for (size_t i = 0; i < LW_CONTROLLER_SPEED_TICKS; i++) {
+		controller->edge_history_us[i] = (uint32_t)now_us;
+	}
 	controller->windows[0] = lw_controller_track_window(controller);
 	lw_motion_init(&controller->motion, &controller->windows[0]);
 	lw_quadrature_init(&controller->quadrature, &controller->quadrature_config,
@@ -416,11 +419,13 @@ static void measure_speed(struct lw_controller *controller, uint64_t now_us)
 {
 	const int64_t edges = lw_motion_read(&controller->motion).net_edges;
 	int64_t *oldest = &controller->edge_history[controller->edge_history_next];
-	const int64_t speed =
-		(edges - *oldest) * 1000000 / (LW_CONTROLLER_SPEED_TICKS * LW_CONTROLLER_TICK_US);
+	uint32_t *oldest_us = &controller->edge_history_us[controller->edge_history_next];
+	const uint32_t duration_us = (uint32_t)now_us - *oldest_us;
+	const int64_t speed = duration_us == 0 ? 0 : (edges - *oldest) * 1000000 / duration_us;
 	const int64_t rest = controller->params->rest_edges_per_s;
 
 	*oldest = edges;
+	*oldest_us = (uint32_t)now_us;
 	controller->edge_history_next =
 		(uint8_t)((controller->edge_history_next + 1) % LW_CONTROLLER_SPEED_TICKS);
 	controller->drum_speed_edges_per_s = (int32_t)speed;

@@ -92,6 +92,8 @@ struct lw_controller {
 
 	/* Drum speed. */
 	int64_t edge_history[LW_CONTROLLER_SPEED_TICKS];
+	uint32_t edge_history_us[LW_CONTROLLER_SPEED_TICKS]; /**< when, low half: ticks may be late
+							      */
 	uint8_t edge_history_next;
 	int32_t drum_speed_edges_per_s;
 	uint64_t rest_since_us; /**< the drum is slow since then */
