@@ -18,6 +18,7 @@ from pymodbus.client import ModbusSerialClient
 UNIT = 1
 NATIVE_DIR = Path(os.environ.get("LEVELWIND_NATIVE_DIR", "build/host"))
 NATIVE_SIM = Path(os.environ.get("LEVELWIND_NATIVE_SIM", "build/native_sim/zephyr/zephyr.exe"))
+QEMU_IMAGE = Path(os.environ.get("LEVELWIND_QEMU_IMAGE", "build/mps2_an385/zephyr/zephyr.elf"))
 TEST_DIR = Path(os.environ.get("LEVELWIND_TEST_DIR", "build/san"))
 
 
@@ -41,7 +42,8 @@ def start(target: str, folder: Path, storage: Path, *, fast: bool = False) -> Si
 
     `storage` is the file that keeps its parameters. `fast` lets its time pass faster than ours.
     """
-    return {"sim": start_simulator, "native_sim": start_native_sim}[target](folder, storage, fast)
+    starters = {"sim": start_simulator, "native_sim": start_native_sim, "qemu": start_qemu}
+    return starters[target](folder, storage, fast)
 
 
 def start_simulator(folder: Path, storage: Path, fast: bool) -> Simulator:
@@ -73,6 +75,25 @@ def start_native_sim(folder: Path, storage: Path, fast: bool) -> Simulator:
     while not said or "connected to the serial port" not in said[-1]:
         said.append(process.stdout.readline())
         assert said[-1], f"the firmware said {said!r}"
+    return Simulator(port, process)
+
+
+def start_qemu(folder: Path, storage: Path, fast: bool) -> Simulator:
+    """The emulator keeps neither parameters nor a clock that could be made faster."""
+    del storage, fast
+    firmware_end, port = join_terminals()
+    process = subprocess.Popen(
+        [
+            *("qemu-system-arm", "-machine", "mps2-an385", "-cpu", "cortex-m3", "-nographic"),
+            # 16 ns of virtual time for an instruction, whatever the host is doing.
+            *("-icount", "shift=4,align=off,sleep=on"),
+            *("-monitor", "none", "-kernel", str(QEMU_IMAGE)),
+            *("-serial", f"file:{folder / 'console.log'}"),
+            *("-chardev", f"serial,id=modbus,path={firmware_end}", "-serial", "chardev:modbus"),
+        ],
+        stdin=subprocess.DEVNULL,
+        text=True,
+    )
     return Simulator(port, process)
 
 

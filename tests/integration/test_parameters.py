@@ -87,7 +87,11 @@ def test_parameters_are_refused_while_tracking(slave: Slave) -> None:
     assert slave.read("pitch_um") == 12_000
 
 
-def test_save_survives_a_kill(own_simulator: Callable[..., Simulator], tmp_path: Path) -> None:
+def test_save_survives_a_kill(
+    target: str, own_simulator: Callable[..., Simulator], tmp_path: Path
+) -> None:
+    if target == "qemu":
+        pytest.skip("the emulated board keeps its parameters in RAM")
     storage = tmp_path / "parameters.bin"
     first = own_simulator(storage)
     slave = Slave(str(first.port))
