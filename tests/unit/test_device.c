@@ -178,6 +178,23 @@ static void test_the_host_can_override_line_settings_and_add_registers(void)
 	TEST_ASSERT_EQUAL_UINT32(16000, rig.device.slave_config.rtu.silence_us);
 }
 
+static void test_default_line_settings_do_not_touch_the_stored_ones(void)
+{
+	const struct lw_device_config other = {.host = LW_HOST_SIMULATOR, .default_line = true};
+	const struct lw_inputs inputs = rig_inputs();
+	struct lw_params saved = lw_params_default;
+	uint8_t record[LW_RECORD_SIZE];
+
+	saved.unit_id = 7;
+	lw_record_encode(&saved, record);
+	lw_device_init(&rig.device, &other, record, sizeof(record), &inputs, 0, 0);
+	TEST_ASSERT_EQUAL_UINT8(1, rig.device.slave_config.unit_id);
+	TEST_ASSERT_EQUAL_INT32(7, rig.device.active.unit_id);
+	TEST_ASSERT_EQUAL_INT32(7, rig.device.stored.unit_id);
+	lw_device_init(&rig.device, &config, record, sizeof(record), &inputs, 0, 0);
+	TEST_ASSERT_EQUAL_UINT8(7, rig.device.slave_config.unit_id);
+}
+
 static void test_parameters_are_staged_then_applied(void)
 {
 	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_OVERSHOOT_UM, 1000));
@@ -216,6 +233,33 @@ static void test_apply_refused_says_why_and_changes_nothing(void)
 	assert_command(LW_COMMAND_REVERT, LW_RESULT_DONE, LW_REASON_NONE);
 	TEST_ASSERT_EQUAL_INT32(LW_NO_ADDRESS, status()->command_address);
 	TEST_ASSERT_FALSE(flag(LW_FLAG_STAGED));
+}
+
+static void test_apply_of_the_decoding_waits_for_the_drum_to_rest(void)
+{
+	static const struct {
+		uint16_t address;
+		int32_t value;
+	} cases[] = {{LW_ADDRESS_ENCODER_EDGES_PER_PULSE, 4},
+		     {LW_ADDRESS_ENCODER_INVERT_A, 1},
+		     {LW_ADDRESS_ENCODER_INVERT_B, 1},
+		     {LW_ADDRESS_DRUM_DIRECTION_INVERT, 1}};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		setUp();
+		rig_drive(4000);
+		TEST_ASSERT_FALSE(flag(LW_FLAG_DRUM_AT_REST));
+		TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 300));
+		command(LW_COMMAND_APPLY);
+		assert_command(LW_COMMAND_APPLY, LW_RESULT_DONE, LW_REASON_NONE);
+
+		TEST_ASSERT_EQUAL_INT(0, write_register(cases[i].address, cases[i].value));
+		TEST_ASSERT_TRUE(write_register(LW_ADDRESS_COMMAND, LW_COMMAND_APPLY) != 0);
+		assert_command(LW_COMMAND_APPLY, LW_RESULT_REFUSED, LW_REASON_DRUM_MOVING);
+		rig_ticks(1000);
+		command(LW_COMMAND_APPLY);
+		assert_command(LW_COMMAND_APPLY, LW_RESULT_DONE, LW_REASON_NONE);
+	}
 }
 
 static void test_apply_keeps_the_index_if_no_parameter_needs_it(void)
@@ -577,8 +621,10 @@ int main(void)
 	RUN_TEST(test_power_up_without_a_record);
 	RUN_TEST(test_power_up_with_a_record);
 	RUN_TEST(test_the_host_can_override_line_settings_and_add_registers);
+	RUN_TEST(test_default_line_settings_do_not_touch_the_stored_ones);
 	RUN_TEST(test_parameters_are_staged_then_applied);
 	RUN_TEST(test_apply_refused_says_why_and_changes_nothing);
+	RUN_TEST(test_apply_of_the_decoding_waits_for_the_drum_to_rest);
 	RUN_TEST(test_apply_keeps_the_index_if_no_parameter_needs_it);
 	RUN_TEST(test_apply_turns_the_encoder_without_a_false_edge);
 	RUN_TEST(test_apply_of_another_contact_type_sees_a_switch_that_is_held);
