@@ -96,8 +96,13 @@ def _block(block: Block) -> str:
     return "".join(parts)
 
 
+def _value_meaning(value: Value) -> str:
+    detail = f". Detail: [{value.detail}](#{value.detail})" if value.detail else ""
+    return value.text + detail
+
+
 def _values(name: str, text: str, values: list[Value], column: str) -> str:
-    rows = [[str(value.value), f"`{value.name}`", value.text] for value in values]
+    rows = [[str(value.value), f"`{value.name}`", _value_meaning(value)] for value in values]
     return f"\n### {name}\n\n{text}.\n\n" + _table([column, "name", "meaning"], rows)
 
 

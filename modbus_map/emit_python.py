@@ -165,6 +165,16 @@ def map_table(map_: Map) -> str:
     parts.append(
         _enum(LAUNCH_INHIBIT, "Bit numbers of the point launch_inhibit", map_.launch_inhibit)
     )
+    details = [
+        f"    {class_name(e.name)}.{member_name(e.name, value.name)}: {class_name(value.detail)},\n"
+        for e in map_.enums.values()
+        for value in e.values
+        if value.detail
+    ]
+    parts.append(
+        "# What names the detail of an event; the details of the others are plain numbers.\n"
+        f"DETAIL_ENUMS: dict[MapEnum, type[MapEnum]] = {{\n{''.join(details)}}}\n\n\n"
+    )
     parts.append(CLASSES)
     product = map_.product
     parts.append(

@@ -34,6 +34,7 @@ class Value:
     value: int
     name: str
     text: str
+    detail: str | None = None  # the enum that names an event's detail
 
 
 @dataclass(frozen=True)
@@ -210,6 +211,9 @@ def _name_errors(map_: Map) -> Iterator[str]:
             yield f"enum {enum.name}: the value {value} is used more than once"
         for name in _duplicates([value.name.upper() for value in enum.values]):
             yield f"enum {enum.name}: the name {name} is used more than once"
+        for value in enum.values:
+            if value.detail is not None and value.detail not in map_.enums:
+                yield f"enum {enum.name}: the detail of {value.name}: no enum {value.detail}"
     for what in ("name", "struct"):
         for name in _duplicates([getattr(block, what) for block in map_.blocks]):
             yield f"block {name}: the {what} is used more than once"

@@ -29,6 +29,11 @@ def block(raw: dict, name: str) -> dict:
 MISTAKES: list[tuple[str, Callable[[dict], object], str]] = [
     ("unknown key", lambda r: point(r, "pitch_um").update(maximum=5), "'maximum' was unexpected"),
     ("no text", lambda r: point(r, "pitch_um").pop("text"), "'text' is a required property"),
+    (
+        "detail of an unknown enum",
+        lambda r: r["enums"]["event"]["values"]["fault_set"].update(detail="faults"),
+        "enum event: the detail of fault_set: no enum faults",
+    ),
     ("unknown type", lambda r: point(r, "pitch_um").update(type="u64"), "'u64' is not one of"),
     (
         "duplicate name",

@@ -9,6 +9,7 @@ set(LW_CORE_SOURCES
   src/device_status.c
   src/homing.c
   src/limit_switch.c
+  src/log.c
   src/motion.c
   src/move.c
   src/params.c

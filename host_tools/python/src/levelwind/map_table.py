@@ -320,6 +320,74 @@ class LineFormat(MapEnum):
     FORMAT_8N2 = 3, "8N2", "8 data bits, no parity, 2 stop bits"
 
 
+class SlotState(MapEnum):
+    """What a slot of the storage holds."""
+
+    EMPTY = 0, "empty", "Never written, or erased"
+    GOOD = 1, "good", "An intact record of this firmware"
+    OLDER = 2, "older", "An intact record of an older schema, converted when it was loaded"
+    NEWER = (
+        3,
+        "newer",
+        "An intact record of newer firmware that this one cannot read. It is kept until two more SAVEs",
+    )
+    DAMAGED = 4, "damaged", "Cut short or changed: not used"
+    REFUSED = 5, "refused", "An intact parameter set that this firmware does not accept: not used"
+
+
+class Event(MapEnum):
+    """What happened, in the event log."""
+
+    NONE = 0, "none", "Empty record"
+    POWER_UP = (
+        1,
+        "power_up",
+        "Power-up. Detail: firmware version, major * 10000 + minor * 100 + patch",
+    )
+    WATCHDOG_RESET = 2, "watchdog_reset", "The watchdog had restarted the controller"
+    DEFAULTS_LOADED = 3, "defaults_loaded", "No usable stored set: the factory values are active"
+    SLOT_DAMAGED = (
+        4,
+        "slot_damaged",
+        "A stored record was damaged. Detail: slot, 0 and 1 parameters, 2 and 3 log",
+    )
+    SLOT_NEWER = 5, "slot_newer", "A stored record of newer firmware was not read. Detail: slot"
+    SLOT_REFUSED = 6, "slot_refused", "A stored parameter set was not accepted. Detail: slot"
+    MODE_CHANGED = 10, "mode_changed", "Another mode came into force"
+    INDEX_STARTED = 11, "index_started", "Indexing began"
+    INDEX_DONE = 12, "index_done", "Indexing succeeded. Detail: span error in um"
+    INDEX_FAILED = (
+        13,
+        "index_failed",
+        "Indexing ended without success; without a fault it was stopped",
+    )
+    TRACKING_STARTED = 14, "tracking_started", "The carriage follows the drum"
+    TRACKING_ENDED = 15, "tracking_ended", "The carriage does not follow the drum any more"
+    STOPPED = 16, "stopped", "The command stop"
+    FAULT_SET = 20, "fault_set", "Stopped by a fault"
+    FAULT_CLEARED = 21, "fault_cleared", "The fault was acknowledged"
+    LOS1_PLUS = 22, "los1_plus", "LOS type 1+. Detail: how many since power-up"
+    LOS1_MINUS = 23, "los1_minus", "LOS type 1-. Detail: how many since power-up"
+    LOS2_PLUS = 24, "los2_plus", "LOS type 2+. Detail: how many since power-up"
+    LOS2_MINUS = 25, "los2_minus", "LOS type 2-. Detail: how many since power-up"
+    WIRING_PLUS = 26, "wiring_plus", "Wiring fault of the plus limit switch"
+    WIRING_MINUS = 27, "wiring_minus", "Wiring fault of the minus limit switch"
+    OVERSPEED_WARNING = (
+        28,
+        "overspeed_warning",
+        "The drum exceeded overspeed_warning_edges_per_s. Detail: edges/s",
+    )
+    MASTER_LOST = 30, "master_lost", "The Modbus master fell silent"
+    MASTER_BACK = 31, "master_back", "The Modbus master is back"
+    APPLIED = 40, "applied", "Staged parameters became active"
+    APPLY_REFUSED = 41, "apply_refused", "The staged parameters were not accepted"
+    SAVED = 42, "saved", "The active parameters were stored. Detail: sequence number of the record"
+    SAVE_FAILED = 43, "save_failed", "The storage failed. Detail: its error number"
+    FACTORY_STAGED = 44, "factory_staged", "Factory values were staged"
+    LOCK_OPENED = 50, "lock_opened", "The write lock was opened"
+    LOCK_CLOSED = 51, "lock_closed", "The write lock closed"
+
+
 class BenchCommand(MapEnum):
     """Commands of the simulated plant."""
 
@@ -443,6 +511,18 @@ class LaunchInhibit(MapEnum):
     OVERSPEED = 5, "overspeed", "The drum tripped the overspeed limit"
     MASTER_LOST = 6, "master_lost", "The Modbus master is silent"
     CORRECTION = 7, "correction", "A re-index correction is pending"
+
+
+# What names the detail of an event; the details of the others are plain numbers.
+DETAIL_ENUMS: dict[MapEnum, type[MapEnum]] = {
+    Event.MODE_CHANGED: Mode,
+    Event.INDEX_FAILED: Fault,
+    Event.TRACKING_ENDED: State,
+    Event.FAULT_SET: Fault,
+    Event.FAULT_CLEARED: Fault,
+    Event.APPLY_REFUSED: Reason,
+    Event.FACTORY_STAGED: Command,
+}
 
 
 @dataclass(frozen=True)

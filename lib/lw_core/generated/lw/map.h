@@ -300,6 +300,93 @@ enum lw_line_format {
 	LW_LINE_FORMAT_8N2 = 3,
 };
 
+/** What a slot of the storage holds */
+enum lw_slot_state {
+	/** Never written, or erased */
+	LW_SLOT_STATE_EMPTY = 0,
+	/** An intact record of this firmware */
+	LW_SLOT_STATE_GOOD = 1,
+	/** An intact record of an older schema, converted when it was loaded */
+	LW_SLOT_STATE_OLDER = 2,
+	/**
+	 * An intact record of newer firmware that this one cannot read. It is kept until two more
+	 * SAVEs
+	 */
+	LW_SLOT_STATE_NEWER = 3,
+	/** Cut short or changed: not used */
+	LW_SLOT_STATE_DAMAGED = 4,
+	/** An intact parameter set that this firmware does not accept: not used */
+	LW_SLOT_STATE_REFUSED = 5,
+};
+
+/** What happened, in the event log */
+enum lw_event {
+	/** Empty record */
+	LW_EVENT_NONE = 0,
+	/** Power-up. Detail: firmware version, major * 10000 + minor * 100 + patch */
+	LW_EVENT_POWER_UP = 1,
+	/** The watchdog had restarted the controller */
+	LW_EVENT_WATCHDOG_RESET = 2,
+	/** No usable stored set: the factory values are active */
+	LW_EVENT_DEFAULTS_LOADED = 3,
+	/** A stored record was damaged. Detail: slot, 0 and 1 parameters, 2 and 3 log */
+	LW_EVENT_SLOT_DAMAGED = 4,
+	/** A stored record of newer firmware was not read. Detail: slot */
+	LW_EVENT_SLOT_NEWER = 5,
+	/** A stored parameter set was not accepted. Detail: slot */
+	LW_EVENT_SLOT_REFUSED = 6,
+	/** Another mode came into force */
+	LW_EVENT_MODE_CHANGED = 10,
+	/** Indexing began */
+	LW_EVENT_INDEX_STARTED = 11,
+	/** Indexing succeeded. Detail: span error in um */
+	LW_EVENT_INDEX_DONE = 12,
+	/** Indexing ended without success; without a fault it was stopped */
+	LW_EVENT_INDEX_FAILED = 13,
+	/** The carriage follows the drum */
+	LW_EVENT_TRACKING_STARTED = 14,
+	/** The carriage does not follow the drum any more */
+	LW_EVENT_TRACKING_ENDED = 15,
+	/** The command stop */
+	LW_EVENT_STOPPED = 16,
+	/** Stopped by a fault */
+	LW_EVENT_FAULT_SET = 20,
+	/** The fault was acknowledged */
+	LW_EVENT_FAULT_CLEARED = 21,
+	/** LOS type 1+. Detail: how many since power-up */
+	LW_EVENT_LOS1_PLUS = 22,
+	/** LOS type 1-. Detail: how many since power-up */
+	LW_EVENT_LOS1_MINUS = 23,
+	/** LOS type 2+. Detail: how many since power-up */
+	LW_EVENT_LOS2_PLUS = 24,
+	/** LOS type 2-. Detail: how many since power-up */
+	LW_EVENT_LOS2_MINUS = 25,
+	/** Wiring fault of the plus limit switch */
+	LW_EVENT_WIRING_PLUS = 26,
+	/** Wiring fault of the minus limit switch */
+	LW_EVENT_WIRING_MINUS = 27,
+	/** The drum exceeded overspeed_warning_edges_per_s. Detail: edges/s */
+	LW_EVENT_OVERSPEED_WARNING = 28,
+	/** The Modbus master fell silent */
+	LW_EVENT_MASTER_LOST = 30,
+	/** The Modbus master is back */
+	LW_EVENT_MASTER_BACK = 31,
+	/** Staged parameters became active */
+	LW_EVENT_APPLIED = 40,
+	/** The staged parameters were not accepted */
+	LW_EVENT_APPLY_REFUSED = 41,
+	/** The active parameters were stored. Detail: sequence number of the record */
+	LW_EVENT_SAVED = 42,
+	/** The storage failed. Detail: its error number */
+	LW_EVENT_SAVE_FAILED = 43,
+	/** Factory values were staged */
+	LW_EVENT_FACTORY_STAGED = 44,
+	/** The write lock was opened */
+	LW_EVENT_LOCK_OPENED = 50,
+	/** The write lock closed */
+	LW_EVENT_LOCK_CLOSED = 51,
+};
+
 /** Commands of the simulated plant */
 enum lw_bench_command {
 	/** Nothing */
