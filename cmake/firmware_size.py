@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Print where the flash and the RAM of a firmware go: firmware_size.py zephyr.map."""
+"""Print where the flash and RAM of a firmware go. Fails if the image is larger than it may be."""
 
+import argparse
 import re
 import sys
 from collections import Counter
@@ -38,8 +39,21 @@ def owner(file: str) -> str:
     return "Zephyr: the rest" if "zephyr/" in file else "other"
 
 
-def main() -> None:
-    text = Path(sys.argv[1]).read_text()
+def symbol(text: str, name: str) -> int:
+    """The value of a symbol that the linker script defines."""
+    match = re.search(rf"^ +0x([0-9a-f]+) +{name} = ", text, re.M)
+    if match is None:
+        sys.exit(f"firmware_size: no symbol {name}: is this the map of a Zephyr image?")
+    return int(match[1], 16)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("map", type=Path, help="build/BOARD/zephyr/zephyr.map")
+    parser.add_argument("--flash-max", type=int, metavar="BYTES", help="largest image")
+    parser.add_argument("--ram-max", type=int, metavar="BYTES", help="most RAM")
+    arguments = parser.parse_args()
+    text = arguments.map.read_text()
     text = text[text.index("Linker script and memory map") :]
     text = re.sub(r"\n(\S+| \S+)\n\s+(?=0x)", r"\n\1 ", text)  # long names
     flash: Counter[str] = Counter()
@@ -58,8 +72,18 @@ def main() -> None:
     print(f"{'':24}{'flash':>8}{'RAM':>8}")
     for part in sorted({*flash, *ram}):
         print(f"{part:24}{flash[part]:8}{ram[part]:8}")
-    print(f"{'sum':24}{flash.total():8}{ram.total():8}")
+    # The linker's own count of the whole: what is left of it lies between the parts.
+    totals = {"flash": symbol(text, "_flash_used"), "RAM": symbol(text, "_image_ram_size")}
+    between = [totals["flash"] - flash.total(), totals["RAM"] - ram.total()]
+    print(f"{'alignment':24}{between[0]:8}{between[1]:8}")
+    print(f"{'whole image':24}{totals['flash']:8}{totals['RAM']:8}")
+
+    limits = {"flash": arguments.flash_max, "RAM": arguments.ram_max}
+    too_large = {kind: limit for kind, limit in limits.items() if limit and totals[kind] > limit}
+    for kind, limit in too_large.items():
+        print(f"the image takes {totals[kind]} bytes of {kind}, limit {limit}", file=sys.stderr)
+    return 1 if too_large else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
