@@ -14,6 +14,10 @@ set(LW_CORE_SOURCES
   src/move.c
   src/params.c
   src/pdu.c
+  src/pdu_data.c
+  src/pdu_diagnostics.c
+  src/pdu_files.c
+  src/pdu_identity.c
   src/record.c
   src/rtu.c
   src/slave.c

@@ -1,10 +1,20 @@
 """Frames and function codes, byte by byte."""
 
 import pytest
-from levelwind.map_table import POINTS, PRODUCT_CODE, PRODUCT_NAME, PRODUCT_VERSION, VENDOR, Reason
+from levelwind.map_table import (
+    POINTS,
+    PRODUCT_CODE,
+    PRODUCT_NAME,
+    PRODUCT_VERSION,
+    VENDOR,
+    Command,
+    Reason,
+    Result,
+    State,
+)
 from slave import RawLine, Slave, sealed
 
-SUPPORTED = {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43}
+SUPPORTED = {1, 2, 3, 4, 5, 6, 8, 15, 16, 17, 20, 21, 22, 23, 43}
 READ_SELF_TEST = bytes.fromhex("04 0000 0002")
 SELF_TEST_ANSWER = bytes.fromhex("04 04 12345678")
 
@@ -28,9 +38,7 @@ def test_wrong_crc_other_unit_and_noise_stay_unanswered(slave: Slave, raw: RawLi
     assert slave.read("crc_errors") == errors + 3
 
 
-@pytest.mark.parametrize(
-    "function", sorted(set(range(1, 128)) - {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43})
-)
+@pytest.mark.parametrize("function", sorted(set(range(1, 128)) - SUPPORTED))
 def test_unknown_functions(raw: RawLine, function: int) -> None:
     assert raw.request(bytes([function, 0, 0, 0, 1])) == bytes([function | 0x80, 1])
 
@@ -68,7 +76,16 @@ def test_unknown_functions(raw: RawLine, function: int) -> None:
         ("03 0000", 3),
         ("03 0000 0001 00", 3),
         ("08 0009 0000", 1),
+        ("08 0003 0000", 1),
+        ("08 000b 0001", 3),
+        ("11 00", 3),
+        ("14 00", 3),
+        ("14 07 05 0001 0000 0001", 2),
+        ("14 07 06 ffff 0000 0001", 2),
+        ("15 09 06 ffff 0000 0001 0000", 2),
         ("2b 0d", 1),
+        ("2b 0e 05 00", 3),
+        ("2b 0e 04 06", 2),
     ],
 )
 def test_bad_requests(slave: Slave, raw: RawLine, pdu: str, exception: int) -> None:
@@ -125,7 +142,22 @@ def test_listen_only_mode_ends_by_restart(slave: Slave, raw: RawLine) -> None:
     assert raw.request(READ_SELF_TEST) == SELF_TEST_ANSWER
 
 
-@pytest.mark.parametrize("code", [1, 2])
+def test_server_id(slave: Slave, raw: RawLine) -> None:
+    text = f" {VENDOR} {PRODUCT_CODE} {PRODUCT_VERSION}".encode()
+    answer = raw.request(b"\x11")
+    assert answer == bytes([0x11, 2 + len(text), ord("L"), 0x00]) + text
+    assert slave.command(Command.INDEX) == Result.DONE
+    slave.wait(lambda: slave.read("state") == State.TRACKING)
+    assert raw.request(b"\x11")[3] == 0xFF
+
+
+def test_one_device_identification_object(raw: RawLine) -> None:
+    head = bytes.fromhex("2b 0e 04 82 00 00 01 04")
+    name = PRODUCT_NAME.encode()
+    assert raw.request(bytes.fromhex("2b 0e 04 04")) == head + bytes([len(name)]) + name
+
+
+@pytest.mark.parametrize("code", [1, 2, 3])
 def test_device_identification(raw: RawLine, code: int) -> None:
     answer = raw.request(bytes([0x2B, 0x0E, code, 0]))
     assert answer[:3] == bytes([0x2B, 0x0E, code])
@@ -138,7 +170,7 @@ def test_device_identification(raw: RawLine, code: int) -> None:
     assert position == len(answer)
     assert [objects[i] for i in range(3)] == [VENDOR, PRODUCT_CODE, PRODUCT_VERSION]
     assert (code == 1) == (4 not in objects)
-    if code == 2:
+    if code > 1:  # extended (3): nothing beyond the regular objects
         assert objects[4] == PRODUCT_NAME
 
 

@@ -1,89 +1,8 @@
 /*
- * Modbus requests: every function code in its normal form, at each limit and one beyond, and
- * refused. Requests and responses live in buffers of exactly their size, so that the address
- * sanitizer sees every access outside.
+ * Modbus requests: every function code for bits and registers in its normal form, at each limit and
+ * one beyond, and refused; and what holds for all functions.
  */
-#include <stdlib.h>
-
-#include <unity.h>
-
-#include "lw/pdu.h"
-#include "small_bank.h"
-
-#define LONG_TEXT                                                                                  \
-	"0123456789012345678901234567890123456789012345678901234567890123456789"                   \
-	"0123456789012345678901234567890123456789012345678901234567890123456789"                   \
-	"0123456789012345678901234567890123456789012345678901234567890123456789"                   \
-	"0123456789012345678901234567890123456789" /* 250 characters */
-
-static const struct lw_pdu_config config = {
-	.bank = &small.bank,
-	.device_id = {"vend", "code", "1.2", "url", "name", "model"},
-};
-
-static struct lw_pdu pdu;
-static uint8_t response[LW_PDU_MAX];
-static size_t response_length;
-
-void setUp(void)
-{
-	small_init();
-	lw_pdu_init(&pdu, &config);
-}
-
-void tearDown(void)
-{
-}
-
-static void ask(const uint8_t *request, size_t length)
-{
-	uint8_t *exact_request = malloc(length);
-	uint8_t *exact_response = malloc(LW_PDU_MAX);
-
-	memcpy(exact_request, request, length);
-	response_length = lw_pdu_handle(&pdu, exact_request, length, exact_response);
-	TEST_ASSERT_LESS_OR_EQUAL(LW_PDU_MAX, response_length);
-	memcpy(response, exact_response, response_length);
-	free(exact_response);
-	free(exact_request);
-}
-
-static void assert_answer(const uint8_t *request, size_t length, const uint8_t *answer,
-			  size_t answer_length)
-{
-	ask(request, length);
-	TEST_ASSERT_EQUAL_UINT(answer_length, response_length);
-	TEST_ASSERT_EQUAL_HEX8_ARRAY(answer, response, answer_length);
-}
-
-/* Refused with this exception and reason, and nothing has changed. */
-static void assert_refused(const uint8_t *request, size_t length, uint8_t exception,
-			   enum lw_reason reason)
-{
-	struct small_bank before = small;
-	uint32_t exceptions = pdu.counters[LW_BUS_EXCEPTIONS];
-
-	ask(request, length);
-	TEST_ASSERT_EQUAL_UINT(2, response_length);
-	TEST_ASSERT_EQUAL_HEX8(request[0] | 0x80, response[0]);
-	TEST_ASSERT_EQUAL_HEX8(exception, response[1]);
-	TEST_ASSERT_EQUAL_UINT16(reason, pdu.last_error.reason);
-	TEST_ASSERT_EQUAL_HEX8(request[0], pdu.last_error.function);
-	TEST_ASSERT_EQUAL_HEX8(exception, pdu.last_error.exception);
-	TEST_ASSERT_EQUAL_UINT32(exceptions + 1, pdu.counters[LW_BUS_EXCEPTIONS]);
-	TEST_ASSERT_EQUAL_MEMORY(&before.values, &small.values, sizeof(small.values));
-	TEST_ASSERT_EQUAL_MEMORY(before.coils, small.coils, sizeof(small.coils));
-	TEST_ASSERT_EQUAL_UINT(before.store_count, small.store_count);
-}
-
-static void assert_error_details(uint16_t address, int32_t value, int32_t limit)
-{
-	TEST_ASSERT_EQUAL_UINT16(address, pdu.last_error.address);
-	TEST_ASSERT_EQUAL_INT32(value, pdu.last_error.value);
-	TEST_ASSERT_EQUAL_INT32(limit, pdu.last_error.limit);
-}
-
-#define BYTES(...) (const uint8_t[]){__VA_ARGS__}, sizeof((const uint8_t[]){__VA_ARGS__})
+#include "pdu_rig.h"
 
 /* A request of function, address, count, byte count and so many zero bytes. */
 static size_t make_write(uint8_t *request, uint8_t function, uint16_t address, uint16_t count,
@@ -312,148 +231,11 @@ static void test_fc23_refusals_write_nothing(void)
 	assert_refused(BYTES(23, 0, 1, 0, 1, 0, 8, 0, 1), 3, LW_REASON_BAD_LENGTH);
 }
 
-/* ---- diagnostics ---- */
-
-static void test_fc08_echo(void)
-{
-	uint8_t request[LW_PDU_MAX + 2] = {8, 0, 0, 1, 2, 3, 4};
-
-	assert_answer(BYTES(8, 0, 0, 0xA5, 0x37), BYTES(8, 0, 0, 0xA5, 0x37));
-	assert_answer(request, LW_PDU_MAX, request, LW_PDU_MAX);
-	assert_refused(request, LW_PDU_MAX + 2, 3, LW_REASON_BAD_LENGTH);
-	assert_refused(BYTES(8, 0, 0, 1, 2, 3), 3, LW_REASON_BAD_LENGTH);
-	assert_refused(BYTES(8, 0, 0), 3, LW_REASON_BAD_LENGTH);
-	assert_refused(BYTES(8), 3, LW_REASON_BAD_LENGTH);
-}
-
-static void test_fc08_reads_each_counter(void)
-{
-	for (uint8_t i = 0; i < LW_BUS_COUNTER_COUNT; i++) {
-		pdu.counters[i] = 0x10100u + i;
-	}
-	pdu.counters[LW_BUS_SERVER_MESSAGES]--; /* the request itself counts */
-	for (uint8_t i = 0; i < LW_BUS_COUNTER_COUNT; i++) {
-		assert_answer(BYTES(8, 0, (uint8_t)(11 + i), 0, 0),
-			      BYTES(8, 0, (uint8_t)(11 + i), 1, i));
-		pdu.counters[LW_BUS_SERVER_MESSAGES] = 0x10100u + LW_BUS_SERVER_MESSAGES - 1;
-	}
-	assert_refused(BYTES(8, 0, 11, 0, 1), 3, LW_REASON_OUT_OF_RANGE);
-	assert_error_details(LW_NO_ADDRESS, 1, 0);
-	assert_refused(BYTES(8, 0, 11, 0, 0, 0, 0), 3, LW_REASON_BAD_LENGTH);
-}
-
-static void test_fc08_diagnostic_register_and_clear(void)
-{
-	pdu.counters[LW_BUS_CRC_ERRORS] = 3;
-	assert_answer(BYTES(8, 0, 2, 0, 0), BYTES(8, 0, 2, 0, 0x0A)); /* and server messages */
-	assert_answer(BYTES(8, 0, 10, 0, 0), BYTES(8, 0, 10, 0, 0));
-	for (unsigned int i = 0; i < LW_BUS_COUNTER_COUNT; i++) {
-		TEST_ASSERT_EQUAL_UINT32(0, pdu.counters[i]);
-	}
-}
-
-static void test_fc08_undefined_sub_functions(void)
-{
-	static const uint16_t undefined[] = {3, 5, 6, 7, 8, 9, 19, 20, 21, 256, 65535};
-
-	for (unsigned int i = 0; i < ARRAY_SIZE(undefined); i++) {
-		assert_refused(BYTES(8, (uint8_t)(undefined[i] >> 8), (uint8_t)undefined[i], 0, 0),
-			       1, LW_REASON_UNDEFINED_SUB_FUNCTION);
-		assert_error_details(LW_NO_ADDRESS, undefined[i], 18);
-	}
-}
-
-static void test_fc08_listen_only_until_restart(void)
-{
-	assert_refused(BYTES(8, 0, 4, 0, 1), 3, LW_REASON_OUT_OF_RANGE);
-	ask(BYTES(8, 0, 4, 0, 0));
-	TEST_ASSERT_EQUAL_UINT(0, response_length);
-	TEST_ASSERT_EQUAL_UINT32(1, pdu.counters[LW_BUS_NO_RESPONSES]);
-	TEST_ASSERT_TRUE(pdu.listen_only);
-
-	ask(BYTES(6, 0, 1, 0, 5)); /* not executed */
-	TEST_ASSERT_EQUAL_UINT(0, response_length);
-	TEST_ASSERT_EQUAL_UINT(0, small.store_count);
-	TEST_ASSERT_EQUAL_UINT32(2, pdu.counters[LW_BUS_NO_RESPONSES]);
-	ask(BYTES(8, 0, 1, 0, 1)); /* no restart */
-	TEST_ASSERT_TRUE(pdu.listen_only);
-
-	ask(BYTES(8, 0, 1, 0, 0));
-	TEST_ASSERT_EQUAL_UINT(0, response_length);
-	TEST_ASSERT_FALSE(pdu.listen_only);
-	TEST_ASSERT_EQUAL_UINT32(0, pdu.counters[LW_BUS_NO_RESPONSES]);
-	assert_answer(BYTES(6, 0, 1, 0, 5), BYTES(6, 0, 1, 0, 5));
-}
-
-static void test_fc08_restart(void)
-{
-	pdu.counters[LW_BUS_MESSAGES] = 9;
-	assert_answer(BYTES(8, 0, 1, 0xFF, 0), BYTES(8, 0, 1, 0xFF, 0));
-	TEST_ASSERT_EQUAL_UINT32(0, pdu.counters[LW_BUS_MESSAGES]);
-	assert_answer(BYTES(8, 0, 1, 0, 0), BYTES(8, 0, 1, 0, 0));
-	assert_refused(BYTES(8, 0, 1, 0xFF, 1), 3, LW_REASON_OUT_OF_RANGE);
-}
-
-/* ---- device identification ---- */
-
-static void test_fc43_streams(void)
-{
-	static const uint8_t basic[] = {43,  14, 1, 0x82, 0,   0,   3,   0, 4, 'v', 'e', 'n',
-					'd', 1,  4, 'c',  'o', 'd', 'e', 2, 3, '1', '.', '2'};
-	static const uint8_t from_name[] = {43,  14,  2,   0x82, 0, 0,   2,   4,   4,   'n',
-					    'a', 'm', 'e', 5,    5, 'm', 'o', 'd', 'e', 'l'};
-
-	assert_answer(BYTES(43, 14, 1, 0), basic, sizeof(basic));
-	assert_answer(BYTES(43, 14, 1, 3), basic, sizeof(basic)); /* not basic: starts anew */
-	assert_answer(BYTES(43, 14, 2, 4), from_name, sizeof(from_name));
-	ask(BYTES(43, 14, 2, 0x80));
-	TEST_ASSERT_EQUAL_HEX8(6, response[6]);
-	TEST_ASSERT_EQUAL_HEX8(0, response[7]);
-	ask(BYTES(43, 14, 3, 0)); /* extended: as much as there is */
-	TEST_ASSERT_EQUAL_HEX8(3, response[2]);
-	TEST_ASSERT_EQUAL_HEX8(0x82, response[3]);
-	TEST_ASSERT_EQUAL_HEX8(6, response[6]);
-}
-
-static void test_fc43_one_object(void)
-{
-	assert_answer(BYTES(43, 14, 4, 3), BYTES(43, 14, 4, 0x82, 0, 0, 1, 3, 3, 'u', 'r', 'l'));
-	assert_refused(BYTES(43, 14, 4, 6), 2, LW_REASON_UNDEFINED_SUB_FUNCTION);
-	assert_error_details(LW_NO_ADDRESS, 6, 5);
-}
-
-static void test_fc43_more_follows(void)
-{
-	static const struct lw_pdu_config long_config = {
-		.bank = &small.bank,
-		.device_id = {"a", LONG_TEXT, "c", "d", "e", "f"},
-	};
-	static const uint8_t full_head[] = {43, 14, 1, 0x82, 0xFF, 2, 1, 1, LW_DEVICE_ID_MAX};
-
-	pdu.config = &long_config;
-	assert_answer(BYTES(43, 14, 1, 0), BYTES(43, 14, 1, 0x82, 0xFF, 1, 1, 0, 1, 'a'));
-	ask(BYTES(43, 14, 1, 1)); /* fills the PDU, its text cut to 244 */
-	TEST_ASSERT_EQUAL_UINT(LW_PDU_MAX, response_length);
-	TEST_ASSERT_EQUAL_HEX8_ARRAY(full_head, response, sizeof(full_head));
-	TEST_ASSERT_EQUAL_MEMORY(LONG_TEXT, &response[sizeof(full_head)], LW_DEVICE_ID_MAX);
-	assert_answer(BYTES(43, 14, 1, 2), BYTES(43, 14, 1, 0x82, 0, 0, 1, 2, 1, 'c'));
-}
-
-static void test_fc43_refusals(void)
-{
-	assert_refused(BYTES(43, 13, 1, 0), 1, LW_REASON_UNDEFINED_SUB_FUNCTION);
-	assert_refused(BYTES(43, 14, 0, 0), 3, LW_REASON_UNDEFINED_SUB_FUNCTION);
-	assert_refused(BYTES(43, 14, 5, 0), 3, LW_REASON_UNDEFINED_SUB_FUNCTION);
-	assert_refused(BYTES(43, 14, 1), 3, LW_REASON_BAD_LENGTH);
-	assert_refused(BYTES(43, 14, 1, 0, 0), 3, LW_REASON_BAD_LENGTH);
-	assert_refused(BYTES(43), 3, LW_REASON_BAD_LENGTH);
-}
-
 /* ---- all functions ---- */
 
 static void test_unknown_functions(void)
 {
-	static const uint8_t known[] = {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43};
+	static const uint8_t known[] = {1, 2, 3, 4, 5, 6, 8, 15, 16, 17, 20, 21, 22, 23, 43};
 	unsigned int unknown_count = 0;
 
 	for (unsigned int function = 0; function < 256; function++) {
@@ -477,7 +259,7 @@ static void test_success_does_not_clear_the_last_error(void)
 
 static void test_only_pure_writes_may_be_broadcast(void)
 {
-	static const uint8_t writes[] = {5, 6, 15, 16, 22};
+	static const uint8_t writes[] = {5, 6, 15, 16, 21, 22};
 
 	for (unsigned int function = 0; function < 256; function++) {
 		TEST_ASSERT_EQUAL(memchr(writes, (int)function, sizeof(writes)) != NULL,
@@ -498,7 +280,8 @@ static uint32_t next_random(void)
 /* Requests that are nearly right. What is refused changes nothing; nothing is accessed outside. */
 static void test_random_requests(void)
 {
-	static const uint8_t functions[] = {1, 2, 3, 4, 5, 6, 8, 15, 16, 22, 23, 43, 99};
+	static const uint8_t functions[] = {1,  2,  3,  4,  5,  6,  8,  15,
+					    16, 17, 20, 21, 22, 23, 43, 99};
 	unsigned int refused = 0;
 	unsigned int stored = 0;
 
@@ -546,16 +329,6 @@ int main(void)
 	RUN_TEST(test_fc23_writes_then_reads);
 	RUN_TEST(test_fc23_limits);
 	RUN_TEST(test_fc23_refusals_write_nothing);
-	RUN_TEST(test_fc08_echo);
-	RUN_TEST(test_fc08_reads_each_counter);
-	RUN_TEST(test_fc08_diagnostic_register_and_clear);
-	RUN_TEST(test_fc08_undefined_sub_functions);
-	RUN_TEST(test_fc08_listen_only_until_restart);
-	RUN_TEST(test_fc08_restart);
-	RUN_TEST(test_fc43_streams);
-	RUN_TEST(test_fc43_one_object);
-	RUN_TEST(test_fc43_more_follows);
-	RUN_TEST(test_fc43_refusals);
 	RUN_TEST(test_unknown_functions);
 	RUN_TEST(test_success_does_not_clear_the_last_error);
 	RUN_TEST(test_only_pure_writes_may_be_broadcast);

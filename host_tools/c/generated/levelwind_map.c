@@ -179,6 +179,10 @@ static const struct levelwind_value reason_values[] = {
 		47, "debounce_too_long",
 		"At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced",
 	},
+	{64, "unknown_file", "There is no file of this number"},
+	{65, "unknown_record", "The file has no record of this number"},
+	{66, "bad_reference_type", "The reference type of a group of file records must be 6"},
+	{67, "answer_too_long", "The answer would not fit into one frame: ask for fewer records"},
 };
 
 static const struct levelwind_value host_values[] = {
@@ -873,7 +877,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_reason", .unit = "", .text = "Why it was refused or failed",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 403,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_reason),
-		.values = reason_values, .value_count = 40,
+		.values = reason_values, .value_count = 44,
 	},
 	{
 		.name = "command_address", .unit = "",
@@ -896,7 +900,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Why the last refused request was refused", .block = LEVELWIND_BLOCK_STATUS,
 		.type = LEVELWIND_TYPE_U16, .address = 410, .words = 1,
 		.offset = offsetof(struct levelwind_status, last_error_reason),
-		.values = reason_values, .value_count = 40,
+		.values = reason_values, .value_count = 44,
 	},
 	{
 		.name = "last_error_function", .unit = "", .text = "Its function code",

@@ -239,6 +239,14 @@ enum levelwind_reason {
 	 * reversal point before the switch is debounced
 	 */
 	LEVELWIND_REASON_DEBOUNCE_TOO_LONG = 47,
+	/** There is no file of this number */
+	LEVELWIND_REASON_UNKNOWN_FILE = 64,
+	/** The file has no record of this number */
+	LEVELWIND_REASON_UNKNOWN_RECORD = 65,
+	/** The reference type of a group of file records must be 6 */
+	LEVELWIND_REASON_BAD_REFERENCE_TYPE = 66,
+	/** The answer would not fit into one frame: ask for fewer records */
+	LEVELWIND_REASON_ANSWER_TOO_LONG = 67,
 };
 
 /** What runs the core */

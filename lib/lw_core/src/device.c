@@ -3,6 +3,9 @@
 #include <errno.h>
 #include <string.h>
 
+/** FC17: what kind of device this is. */
+#define SERVER_ID 'L'
+
 /** Stage the factory values of every parameter, or of those with or without the line's flag. */
 static void stage_factory(struct lw_device *device, bool motion, bool line)
 {
@@ -167,6 +170,12 @@ void lw_device_record_written(struct lw_device *device, int result)
 	}
 }
 
+/** The run indicator of FC17: the carriage follows the drum. */
+static bool is_running(const void *context)
+{
+	return ((const struct lw_device *)context)->controller.state == LW_STATE_TRACKING;
+}
+
 void lw_device_init(struct lw_device *device, const struct lw_device_config *config,
 		    const uint8_t *record, size_t length, const struct lw_inputs *inputs,
 		    uint64_t now_us, uint64_t slave_now_us)
@@ -201,6 +210,9 @@ void lw_device_init(struct lw_device *device, const struct lw_device_config *con
 		.pdu.bank = &device->bank,
 		.pdu.device_id = {LW_PRODUCT_VENDOR, LW_PRODUCT_CODE, LW_VERSION_STRING,
 				  LW_PRODUCT_URL, LW_PRODUCT_NAME, LW_PRODUCT_CODE},
+		.pdu.server_id = SERVER_ID,
+		.pdu.is_running = is_running,
+		.pdu.context = device,
 	};
 	lw_slave_init(&device->slave, &device->slave_config, slave_now_us);
 }

@@ -274,6 +274,18 @@ class Reason(MapEnum):
         "debounce_too_long",
         "At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced",
     )
+    UNKNOWN_FILE = 64, "unknown_file", "There is no file of this number"
+    UNKNOWN_RECORD = 65, "unknown_record", "The file has no record of this number"
+    BAD_REFERENCE_TYPE = (
+        66,
+        "bad_reference_type",
+        "The reference type of a group of file records must be 6",
+    )
+    ANSWER_TOO_LONG = (
+        67,
+        "answer_too_long",
+        "The answer would not fit into one frame: ask for fewer records",
+    )
 
 
 class Host(MapEnum):

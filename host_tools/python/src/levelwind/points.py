@@ -11,6 +11,7 @@ PARAMETERS = [point for point in POINTS.values() if point.block == "parameters"]
 REGISTERS_PER_READ = 125
 REGISTERS_PER_WRITE = 123
 NO_ADDRESS = 0xFFFF
+SET_REASONS = range(30, 50)  # why APPLY refuses a set: the value of one parameter is to blame
 
 
 def lookup(name: str) -> Point:
@@ -185,7 +186,7 @@ def refusal_text(reason: int, address: int, value: int, limit: int) -> str:
     """A refusal of the controller in words: why, and which value broke which limit."""
     text = enum_text(Reason, reason)
     point = at_address(address)
-    if reason != Reason.OUT_OF_RANGE and reason < Reason.SLOPE_ABOVE_ONE_STEP:
+    if reason != Reason.OUT_OF_RANGE and reason not in SET_REASONS:
         return text  # no value is to blame
     if point is None:
         return text if address == NO_ADDRESS else f"{text}\naddress {address}"

@@ -3,7 +3,7 @@
  * Modbus requests: request PDU in, response PDU or exception out
  * (MODBUS Application Protocol V1.1b3). Not for interrupt context.
  *
- * Function codes 01 to 06, 08, 15, 16, 22, 23 and 43/14.
+ * Function codes 01 to 06, 08, 15 to 17, 20 to 23 and 43/14.
  */
 #ifndef LW_PDU_H
 #define LW_PDU_H
@@ -44,10 +44,48 @@ enum lw_device_id {
 /** Longest object of FC43/14 that fits into a response; what is longer is cut. */
 #define LW_DEVICE_ID_MAX 244u
 
+/** Most records that a file may have: they are numbered 0 to 9999. */
+#define LW_PDU_FILE_RECORDS_MAX 10000u
+
+/**
+ * A file of FC20 and FC21. Its records are 16 bits wide, high byte first. A request is done whole
+ * or not at all: every group of it is checked before the first is written.
+ */
+struct lw_pdu_file {
+	uint16_t number; /**< 1 to 65535 */
+	void *context;   /**< handed to the functions below */
+
+	/** Records that the file has now, at most LW_PDU_FILE_RECORDS_MAX. */
+	uint16_t (*record_count)(void *context);
+
+	/** Read `count` records from `first` on, all of which exist, as 2 * count bytes. */
+	void (*read)(void *context, uint16_t first, uint16_t count, uint8_t *out);
+
+	/**
+	 * May these records, all of which exist, be written now? NULL: the file is read only.
+	 * @param in 2 * count bytes
+	 * @param why receives the whole refusal
+	 * @retval 0 yes
+	 * @retval -EBUSY not now (Modbus exception 06)
+	 * @retval -EINVAL not these values (Modbus exception 03)
+	 */
+	int (*allow)(void *context, uint16_t first, uint16_t count, const uint8_t *in,
+		     struct lw_refusal *why);
+
+	/** Take records that were allowed. Cannot fail. NULL: the file is read only. */
+	void (*write)(void *context, uint16_t first, uint16_t count, const uint8_t *in);
+};
+
 /** What a slave offers. Everything pointed to must outlive it. */
 struct lw_pdu_config {
 	const struct lw_bank *bank;
 	const char *device_id[LW_DEVICE_ID_COUNT]; /**< never NULL */
+	const struct lw_pdu_file *files;           /**< NULL if there are none */
+	size_t file_count;
+	uint8_t server_id; /**< of FC17: what kind of device this is */
+	/** The run indicator of FC17. */
+	bool (*is_running)(const void *context);
+	const void *context; /**< handed to is_running() */
 };
 
 /** The last refused request; the registers last_error_*. Neither reading nor success clears it. */
@@ -55,7 +93,7 @@ struct lw_last_error {
 	uint16_t reason; /**< enum lw_reason */
 	uint8_t function;
 	uint8_t exception;
-	uint16_t address; /**< offending address, LW_NO_ADDRESS if none */
+	uint16_t address; /**< offending address or record, LW_NO_ADDRESS if none */
 	int32_t value;    /**< offending value, count, length or code */
 	int32_t limit;    /**< the limit that it broke */
 };
