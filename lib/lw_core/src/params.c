@@ -102,6 +102,16 @@ static int64_t overshoot_q16(int64_t ka, int64_t nr)
 }
 
 /**
+ * The Ka whose product with `nr` is nearest to the ideal slope: ideal / (nr * 65536) to nearest.
+ * All halved, so that it stays within 32 bit, which a controller divides in a few cycles: this
+ * stands in the innermost loop below.
+ */
+static int64_t nearest_ka(uint32_t ideal_q32, uint32_t nr)
+{
+	return (ideal_q32 / 2 + nr * (LW_USTEP / 4)) / (nr * (LW_USTEP / 2));
+}
+
+/**
  * Choose Ka and Nr: of all pairs whose Ka * Nr meets the ideal slope within the tolerance, the one
  * whose Nr is nearest to the Nr that the overshoot asks for, 2 dP / Ks + 1.
  */
@@ -127,10 +137,18 @@ static int choose_slope(const struct lw_params *params, struct lw_derived *deriv
 					     params->screw_lead_um;
 	const int64_t nr_wanted = 2 * overshoot_usteps_q16 / ideal + 1;
 
+	/* With Nr = 1 every slope can be had: if the nearest one will not do, none will. */
+	const int64_t rounding_q32 = ideal * LW_USTEP - ideal_q32;
+
+	if ((rounding_q32 < 0 ? -rounding_q32 : rounding_q32) > tolerance_q32) {
+		return refuse(why, LW_REASON_SLOPE_UNREACHABLE, LW_ADDRESS_SLOPE_TOLERANCE_PPM,
+			      params->slope_tolerance_ppm, divide_nearest(1000000, 2 * ideal) + 1);
+	}
+
 	/* Beyond `ideal` edges Ka would be below 1. */
 	const int64_t nr_start = nr_wanted < ideal ? nr_wanted : ideal;
 
-	for (int64_t distance = 0; distance <= ideal; distance++) {
+	for (int64_t distance = 0;; distance++) {
 		const int64_t candidates[2] = {nr_start - distance, nr_start + distance};
 
 		for (int i = 0; i < 2; i++) {
@@ -140,7 +158,7 @@ static int choose_slope(const struct lw_params *params, struct lw_derived *deriv
 				continue;
 			}
 
-			const int64_t ka = divide_nearest(ideal_q32, nr * LW_USTEP);
+			const int64_t ka = nearest_ka((uint32_t)ideal_q32, (uint32_t)nr);
 			const int64_t ks = ka * nr;
 			const int64_t error_q32 = ks * LW_USTEP - ideal_q32;
 
@@ -155,8 +173,6 @@ static int choose_slope(const struct lw_params *params, struct lw_derived *deriv
 			return 0;
 		}
 	}
-	return refuse(why, LW_REASON_SLOPE_UNREACHABLE, LW_ADDRESS_SLOPE_TOLERANCE_PPM,
-		      params->slope_tolerance_ppm, divide_nearest(1000000, 2 * ideal) + 1);
 }
 
 /** L+ and L- of a set that may be trimmed. */
