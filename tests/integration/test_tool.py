@@ -13,8 +13,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
-from levelwind.map_table import State
-from slave import NATIVE_DIR, Simulator, Slave
+from levelwind.map_table import Command, State
+from slave import NATIVE_DIR, Simulator, Slave, bring_to_rest
 
 ROOT = Path(__file__).parents[2]
 LEVELWIND = [sys.executable, "-c", "from levelwind.cli import main; main()"]
@@ -174,6 +174,16 @@ def test_no_port_no_answer_wrong_unit(at: str, tmp_path: Path) -> None:
     assert "--unit" in refusal(at, "status", "--unit", "9", "--timeout", "0.2")
 
 
+def read_until(descriptor: int, wanted: bytes) -> None:
+    """Read what a running command prints until it has printed this."""
+    seen = b""
+    while wanted not in seen:
+        assert select.select([descriptor], [], [], 30)[0], f"nothing more shown after {seen!r}"
+        more = os.read(descriptor, 4096)
+        assert more, f"ended after {seen!r}"
+        seen += more
+
+
 @contextmanager
 def watching(port: str) -> Iterator[subprocess.Popen[bytes]]:
     """`status --watch` on a terminal, after its first picture."""
@@ -185,10 +195,7 @@ def watching(port: str) -> Iterator[subprocess.Popen[bytes]]:
         stderr=subprocess.PIPE,
     )
     os.close(theirs)
-    seen = b""
-    while b"UNINDEXED" not in seen:
-        assert select.select([ours], [], [], 30)[0], f"nothing shown: {seen!r}"
-        seen += os.read(ours, 4096)
+    read_until(ours, b"UNINDEXED")
     drain = threading.Thread(target=read_to_the_end, args=(ours,), daemon=True)
     drain.start()
     try:
@@ -203,6 +210,45 @@ def read_to_the_end(descriptor: int) -> None:
     with suppress(OSError):
         while os.read(descriptor, 4096):
             pass
+
+
+def test_watching_without_a_terminal_prints_every_change(
+    own_simulator: Callable[..., Simulator],
+) -> None:
+    port = str(own_simulator().port)
+    slave = Slave(port)
+    bring_to_rest(slave)
+    assert slave.write("command", Command.INDEX) == 0
+    slave.close()
+    process = subprocess.Popen(
+        [*LEVELWIND, "status", "--watch"], env=environment(port), stdout=subprocess.PIPE
+    )
+    assert process.stdout is not None
+    try:
+        read_until(process.stdout.fileno(), b" SEEKING ")
+        read_until(process.stdout.fileno(), b" SPAN CHECK ")
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_a_terminated_launch_stops_the_drum(at: str) -> None:
+    ours, theirs = pty.openpty()
+    profile = str(ROOT / "profiles" / "ground_launch.csv")
+    process = subprocess.Popen([*LEVELWIND, "launch", profile], env=environment(at), stdout=theirs)
+    os.close(theirs)
+    try:
+        read_until(ours, b" 10%")
+        process.terminate()
+        read_to_the_end(ours)
+        assert process.wait(30) == 130
+    finally:
+        process.kill()
+        os.close(ours)
+    slave = Slave(at)
+    assert slave.read("bench_profile_running") == 0
+    assert slave.read("bench_drum_speed_millirpm") == 0
+    slave.close()
 
 
 def test_ctrl_c_ends_watching_without_a_traceback(at: str) -> None:

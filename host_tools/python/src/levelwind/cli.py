@@ -1,6 +1,8 @@
 """The command `levelwind`."""
 
+import signal
 import sys
+from types import FrameType
 from typing import Any
 
 import typer
@@ -75,6 +77,13 @@ for panel, commands in {
         app.command(name, rich_help_panel=panel)(function)
 
 
+def _end(number: int, _: FrameType | None) -> None:
+    """End as Ctrl-C does, so that whatever a command has set in motion is stopped."""
+    raise KeyboardInterrupt(signal.Signals(number).name)
+
+
 def main() -> None:
     """Entry point."""
+    signal.signal(signal.SIGTERM, _end)
+    signal.signal(signal.SIGHUP, _end)
     app()

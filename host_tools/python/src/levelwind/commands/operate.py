@@ -2,7 +2,7 @@
 
 import time
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NoReturn
 
 import typer
 from rich.live import Live
@@ -27,6 +27,7 @@ from levelwind.motion import INDEX_LIMIT_S, hold_jog
 from levelwind.output import console, json_value, print_json
 from levelwind.points import enum_label, format_value, parse_value
 from levelwind.status import (
+    Travel,
     describe_state,
     flag,
     read_live,
@@ -76,10 +77,24 @@ def status(
     if not watch:
         console.print(render(read_status(device), travel))
         return
+    if not console.is_terminal or console.is_dumb_terminal:
+        _print_changes(device, travel)
     with Live(render(read_status(device), travel), console=console, auto_refresh=False) as live:
         while True:
             time.sleep(WATCH_PERIOD_S)
             live.update(render(read_status(device), travel), refresh=True)
+
+
+def _print_changes(device: Device, travel: Travel) -> NoReturn:
+    """Where nothing can be drawn over: the view again whenever what it says has changed."""
+    shown = None
+    while True:
+        now = read_status(device)
+        told = {name: now[name] for name in ("state", "fault", "flags", "launch_inhibit")}
+        if told != shown:
+            console.print(render(now, travel))
+            shown = told
+        time.sleep(WATCH_PERIOD_S)
 
 
 @with_device
