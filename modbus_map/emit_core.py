@@ -105,6 +105,7 @@ def _point_flags(point: Point) -> str:
             ("SCOPE_LINE", point.scope == "line"),
             ("REINDEX", point.reindex),
             ("COMMAND", point.command),
+            ("SECRET", point.secret),
         )
         if is_set
     ]

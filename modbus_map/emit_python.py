@@ -56,6 +56,7 @@ class Point:
     writable: bool = False
     command: bool = False  # writing a value other than 0 runs a command
     reindex: bool = False  # a change makes the index invalid
+    secret: bool = False  # reads max if it is not 0; writing max keeps it
     enum: type[MapEnum] | None = None  # names of the values
     bits: type[MapEnum] | None = None  # names of the bits, by bit number
     mirrors: dict[str, int] = field(default_factory=dict)  # input register addresses by copy
@@ -129,7 +130,9 @@ def _fields(point: Point, block: Block) -> list[str]:
     if point.scope:
         fields.append(f'scope="{point.scope}"')
     fields += [
-        f"{flag}=True" for flag in ("writable", "command", "reindex") if getattr(point, flag)
+        f"{flag}=True"
+        for flag in ("writable", "command", "reindex", "secret")
+        if getattr(point, flag)
     ]
     if point.enum:
         fields.append(f"enum={class_name(point.enum)}")

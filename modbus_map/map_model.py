@@ -73,6 +73,7 @@ class Point:
     unit: str = ""
     scope: str = ""
     reindex: bool = False
+    secret: bool = False
 
     @property
     def words(self) -> int:
@@ -155,7 +156,7 @@ def _point(raw: dict, space: str, enums: dict[str, Enum]) -> Point:
         if "default" not in raw:
             raise MapError(f"{raw['name']}: a writable point needs a default")
         fields["min"], fields["max"] = _limits(raw, enums)
-    elif raw.keys() & {"min", "max", "allowed", "default", "scope", "reindex", "command"}:
+    elif raw.keys() & {"min", "max", "allowed", "default", "scope", "reindex", "command", "secret"}:
         raise MapError(f"{raw['name']}: cannot be written, so it has no limits, default or scope")
     return Point(**fields)
 

@@ -294,7 +294,14 @@ static bool serve_port(struct simulator *simulator)
 	if (length > 0) {
 		lw_port_write(&simulator->port, bytes, length);
 	}
-	return true;
+
+	const int ret = lw_port_set_line(&simulator->port, &simulator->world.device.line);
+
+	if (ret) {
+		fprintf(stderr, "lw_sim: %s: line settings: %s\n", simulator->options.port,
+			strerror(-ret));
+	}
+	return ret == 0;
 }
 
 /** Wait for bytes, the end of a frame, or the next chunk. */
@@ -373,7 +380,6 @@ int main(int argc, char **argv)
 	const struct sigaction action = {.sa_handler = on_signal};
 	uint8_t record[LW_RECORD_SIZE + 1]; /* one more, so that a longer file is noticed */
 	struct lw_world_config config;
-	struct lw_port_line line;
 	ssize_t record_length = 0;
 	int ret;
 
@@ -422,9 +428,7 @@ int main(int argc, char **argv)
 			simulator.options.carriage_um);
 		return EXIT_FAILURE;
 	}
-	line.baud = simulator.world.device.line.baud_rate;
-	line.format = (enum lw_line_format)simulator.world.device.line.line_format;
-	ret = lw_port_open(&simulator.port, simulator.options.port, line);
+	ret = lw_port_open(&simulator.port, simulator.options.port, &simulator.world.device.line);
 	if (ret) {
 		fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.port, port_error(ret));
 		return EXIT_FAILURE;

@@ -62,37 +62,43 @@ static speed_t speed_of(uint32_t baud)
 	}
 }
 
-static int open_serial(struct lw_port *port, const char *path, struct lw_port_line line)
+static int configure_serial(struct lw_port *port, const struct lw_line *line)
 {
 	struct termios settings;
+
+	if (tcgetattr(port->fd, &settings)) {
+		return -errno;
+	}
+	cfmakeraw(&settings);
+	cfsetspeed(&settings, speed_of(line->baud_rate));
+	settings.c_cflag |= CLOCAL | CREAD;
+	settings.c_cflag &= ~(tcflag_t)(PARENB | PARODD | CSTOPB);
+	if (line->format == LW_LINE_FORMAT_8E1) {
+		settings.c_cflag |= PARENB;
+	} else if (line->format == LW_LINE_FORMAT_8O1) {
+		settings.c_cflag |= PARENB | PARODD;
+	} else if (line->format == LW_LINE_FORMAT_8N2) {
+		settings.c_cflag |= CSTOPB;
+	}
+	if (tcsetattr(port->fd, TCSADRAIN, &settings)) {
+		return -errno;
+	}
+	port->line = *line;
+	return 0;
+}
+
+static int open_serial(struct lw_port *port, const char *path, const struct lw_line *line)
+{
 	int ret;
 
 	port->fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
 	if (port->fd < 0) {
 		return -errno;
 	}
-	if (tcgetattr(port->fd, &settings)) {
-		goto fail;
+	ret = configure_serial(port, line);
+	if (ret) {
+		close(port->fd);
 	}
-	cfmakeraw(&settings);
-	cfsetspeed(&settings, speed_of(line.baud));
-	settings.c_cflag |= CLOCAL | CREAD;
-	settings.c_cflag &= ~(tcflag_t)(PARENB | PARODD | CSTOPB);
-	if (line.format == LW_LINE_FORMAT_8E1) {
-		settings.c_cflag |= PARENB;
-	} else if (line.format == LW_LINE_FORMAT_8O1) {
-		settings.c_cflag |= PARENB | PARODD;
-	} else if (line.format == LW_LINE_FORMAT_8N2) {
-		settings.c_cflag |= CSTOPB;
-	}
-	if (tcsetattr(port->fd, TCSANOW, &settings)) {
-		goto fail;
-	}
-	return 0;
-
-fail:
-	ret = -errno;
-	close(port->fd);
 	return ret;
 }
 
@@ -153,10 +159,21 @@ fail:
 	return ret;
 }
 
-int lw_port_open(struct lw_port *port, const char *path, struct lw_port_line line)
+int lw_port_open(struct lw_port *port, const char *path, const struct lw_line *line)
 {
 	*port = (struct lw_port){.fd = -1, .client_fd = -1};
 	return lw_port_is_serial(path) ? open_serial(port, path, line) : open_pty(port, path);
+}
+
+int lw_port_set_line(struct lw_port *port, const struct lw_line *line)
+{
+	const bool is_pty = port->client_fd >= 0;
+
+	if (is_pty ||
+	    (line->baud_rate == port->line.baud_rate && line->format == port->line.format)) {
+		return 0;
+	}
+	return configure_serial(port, line);
 }
 
 void lw_port_close(struct lw_port *port)

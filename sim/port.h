@@ -10,20 +10,15 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-#include "lw/map.h"
-
-/** Line settings of a real serial port. */
-struct lw_port_line {
-	uint32_t baud;
-	enum lw_line_format format;
-};
+#include "lw/device.h"
 
 /** An open port. */
 struct lw_port {
 	int fd;
 	int client_fd; /**< pty: our own hold on the client's side, so that clients may come and go
 			*/
-	char link[4096]; /**< pty: the link to remove at the end; empty otherwise */
+	struct lw_line line; /**< of a serial port */
+	char link[4096];     /**< pty: the link to remove at the end; empty otherwise */
 };
 
 /** True if the path is a serial port, false if a pseudo terminal would be made. */
@@ -37,7 +32,16 @@ bool lw_port_is_serial(const char *path);
  * @retval -EADDRINUSE the path is a link to a pseudo terminal that is in use
  * @retval <0 another errno
  */
-int lw_port_open(struct lw_port *port, const char *path, struct lw_port_line line);
+int lw_port_open(struct lw_port *port, const char *path, const struct lw_line *line);
+
+/**
+ * Give a serial port other line settings, after what has been written is sent. Does nothing to a
+ * pseudo terminal, or if the settings are what they were.
+ *
+ * @retval 0 done
+ * @retval <0 errno
+ */
+int lw_port_set_line(struct lw_port *port, const struct lw_line *line);
 
 /** Close, and remove the link if it is still ours. */
 void lw_port_close(struct lw_port *port);

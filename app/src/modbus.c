@@ -5,9 +5,12 @@
 
 #include <zephyr/drivers/gpio.h>
 #include <zephyr/drivers/uart.h>
+#include <zephyr/logging/log.h>
 #include <zephyr/task_wdt/task_wdt.h>
 
 #include "app.h"
+
+LOG_MODULE_DECLARE(levelwind);
 
 static const struct device *const uart = DEVICE_DT_GET(DT_PHANDLE(APP_NODE, modbus_uart));
 static const struct gpio_dt_spec driver_enable =
@@ -31,6 +34,9 @@ static struct {
 	uint8_t bytes[LW_RTU_FRAME_MAX];
 } tx;
 static K_SEM_DEFINE(tx_free, 1, 1);
+
+/** What the UART is configured to. The thread's, once it runs. */
+static struct lw_line configured;
 
 static bool sending(void)
 {
@@ -122,6 +128,60 @@ static size_t wait_for_frame(uint8_t bytes[LW_RTU_FRAME_MAX + 1], uint64_t *last
 	}
 }
 
+#ifdef CONFIG_UART_USE_RUNTIME_CONFIGURE
+static int configure_line(const struct lw_line *line)
+{
+	struct uart_config config = {
+		.baudrate = line->baud_rate,
+		.data_bits = UART_CFG_DATA_BITS_8,
+		.parity = UART_CFG_PARITY_NONE,
+		.stop_bits = UART_CFG_STOP_BITS_1,
+		.flow_ctrl = UART_CFG_FLOW_CTRL_NONE,
+	};
+
+	switch (line->format) {
+	case LW_LINE_FORMAT_8E1:
+		config.parity = UART_CFG_PARITY_EVEN;
+		break;
+	case LW_LINE_FORMAT_8O1:
+		config.parity = UART_CFG_PARITY_ODD;
+		break;
+	case LW_LINE_FORMAT_8N2:
+		config.stop_bits = UART_CFG_STOP_BITS_2;
+		break;
+	case LW_LINE_FORMAT_8N1:
+		break;
+	}
+	return uart_configure(uart, &config);
+}
+#else
+/** The line of this board has no baud rate and no parity. */
+static int configure_line(const struct lw_line *line)
+{
+	ARG_UNUSED(line);
+	return 0;
+}
+#endif
+
+/** Make the UART as the device wants it, once nothing is being sent. */
+static void follow_line_settings(void)
+{
+	struct lw_line line;
+
+	k_mutex_lock(&app_lock, K_FOREVER);
+	line = app_device.line;
+	k_mutex_unlock(&app_lock);
+	if (line.baud_rate == configured.baud_rate && line.format == configured.format) {
+		return;
+	}
+	(void)k_sem_take(&tx_free, K_FOREVER);
+	if (configure_line(&line) != 0) {
+		LOG_ERR("the UART refuses %u baud, format %d", line.baud_rate, (int)line.format);
+	}
+	k_sem_give(&tx_free);
+	configured = line;
+}
+
 static void run(void *channel, void *unused1, void *unused2)
 {
 	uint8_t bytes[LW_RTU_FRAME_MAX + 1];
@@ -130,6 +190,8 @@ static void run(void *channel, void *unused1, void *unused2)
 	ARG_UNUSED(unused1);
 	ARG_UNUSED(unused2);
 	for (;;) {
+		follow_line_settings();
+
 		const size_t count = wait_for_frame(bytes, &last_byte_us);
 		struct lw_slave *slave = &app_device.slave;
 
@@ -154,41 +216,6 @@ static void run(void *channel, void *unused1, void *unused2)
 	}
 }
 
-#ifdef CONFIG_UART_USE_RUNTIME_CONFIGURE
-static int configure_line(void)
-{
-	const struct lw_params *line = &app_device.line;
-	struct uart_config config = {
-		.baudrate = (uint32_t)line->baud_rate,
-		.data_bits = UART_CFG_DATA_BITS_8,
-		.parity = UART_CFG_PARITY_NONE,
-		.stop_bits = UART_CFG_STOP_BITS_1,
-		.flow_ctrl = UART_CFG_FLOW_CTRL_NONE,
-	};
-
-	switch ((enum lw_line_format)line->line_format) {
-	case LW_LINE_FORMAT_8E1:
-		config.parity = UART_CFG_PARITY_EVEN;
-		break;
-	case LW_LINE_FORMAT_8O1:
-		config.parity = UART_CFG_PARITY_ODD;
-		break;
-	case LW_LINE_FORMAT_8N2:
-		config.stop_bits = UART_CFG_STOP_BITS_2;
-		break;
-	case LW_LINE_FORMAT_8N1:
-		break;
-	}
-	return uart_configure(uart, &config);
-}
-#else
-/** The line of this board has no baud rate and no parity. */
-static int configure_line(void)
-{
-	return 0;
-}
-#endif
-
 int modbus_start(void)
 {
 	int channel;
@@ -202,7 +229,8 @@ int modbus_start(void)
 		      ? 0
 		      : gpio_pin_configure_dt(&driver_enable, GPIO_OUTPUT_INACTIVE);
 	if (ret == 0) {
-		ret = configure_line();
+		configured = app_device.line;
+		ret = configure_line(&configured);
 	}
 	if (ret == 0) {
 		ret = uart_irq_callback_user_data_set(uart, on_uart, NULL);

@@ -6,9 +6,11 @@ set(LW_CORE_SOURCES
   src/crc16.c
   src/device.c
   src/device_bank.c
+  src/device_line.c
   src/device_status.c
   src/homing.c
   src/limit_switch.c
+  src/lock.c
   src/log.c
   src/motion.c
   src/move.c

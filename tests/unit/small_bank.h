@@ -32,6 +32,7 @@ struct small_values {
 	int32_t array[200];
 	int32_t next;
 	uint32_t last;
+	int32_t secret;
 };
 
 static const int32_t small_bauds[] = {1200, 9600, 115200};
@@ -101,6 +102,15 @@ static const struct lw_point small_next_points[] = {
 	{.address = 0, AT(next), .type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .max = 65535},
 };
 
+/** A value that is not shown. */
+static const struct lw_point small_secret_points[] = {
+	{.address = 500,
+	 AT(secret),
+	 .type = LW_TYPE_U16,
+	 .flags = LW_POINT_WRITABLE | LW_POINT_SECRET,
+	 .max = 1000},
+};
+
 /** The end of the address space. */
 static const struct lw_point small_last_points[] = {
 	{.address = 65534, AT(last), .type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE, .max = 1000},
@@ -136,7 +146,7 @@ struct small_bank {
 	struct small_values values;
 	uint32_t coils[BIT_SECTIONS];
 	uint32_t discretes[BIT_SECTIONS];
-	struct lw_bank_section sections[5 + 2 * BIT_SECTIONS];
+	struct lw_bank_section sections[6 + 2 * BIT_SECTIONS];
 	struct lw_bank bank;
 
 	const struct lw_point *refused_point; /**< allow() refuses this one */
@@ -217,6 +227,7 @@ static inline void small_init(void)
 	*section++ = SMALL_SECTION(LW_SPACE_INPUT, small_points, 1000, &small.values);
 	*section++ = SMALL_SECTION(LW_SPACE_HOLDING, small_next_points, 300, &small.values);
 	*section++ = SMALL_SECTION(LW_SPACE_HOLDING, small_last_points, 0, &small.values);
+	*section++ = SMALL_SECTION(LW_SPACE_HOLDING, small_secret_points, 0, &small.values);
 	*section = SMALL_SECTION(LW_SPACE_HOLDING, small_read_only_points, 0, &small.values);
 	section->allow = NULL;
 	section->store = NULL;

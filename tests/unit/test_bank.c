@@ -255,6 +255,23 @@ static void test_one_refusal_of_the_owner_stores_nothing(void)
 	TEST_ASSERT_EQUAL_INT(0, WRITE(1, 50, 0, 20));
 }
 
+static void test_a_secret_is_not_shown(void)
+{
+	static const uint16_t writes[] = {1, 999, 1000, 0};
+	static const int32_t kept[] = {1, 999, 999, 0};
+	static const uint16_t read[] = {1000, 1000, 1000, 0};
+
+	for (unsigned int i = 0; i < ARRAY_SIZE(writes); i++) {
+		TEST_ASSERT_EQUAL_INT(0, WRITE(500, writes[i]));
+		TEST_ASSERT_EQUAL_INT32(kept[i], small.values.secret);
+		TEST_ASSERT_EQUAL_INT(0, lw_bank_read_registers(&small.bank, LW_SPACE_HOLDING, 500,
+								1, bytes, &why));
+		TEST_ASSERT_EQUAL_UINT16(read[i], bytes[0] << 8 | bytes[1]);
+	}
+	TEST_ASSERT_EQUAL_UINT(ARRAY_SIZE(writes), small.allow_count);
+	TEST_ASSERT_EQUAL_UINT(ARRAY_SIZE(writes) - 1, small.store_count);
+}
+
 static void test_one_command_per_request(void)
 {
 	TEST_ASSERT_EQUAL_INT(0,
@@ -317,6 +334,7 @@ int main(void)
 	RUN_TEST(test_values_are_checked_at_each_limit);
 	RUN_TEST(test_one_bad_value_stores_nothing);
 	RUN_TEST(test_one_refusal_of_the_owner_stores_nothing);
+	RUN_TEST(test_a_secret_is_not_shown);
 	RUN_TEST(test_one_command_per_request);
 	RUN_TEST(test_bits_are_packed_from_the_lowest);
 	RUN_TEST(test_bits_beyond_the_end_are_unknown);

@@ -89,6 +89,10 @@ static const struct levelwind_value command_values[] = {
 	{7, "factory_motion", "Stage the factory values of everything but the line settings"},
 	{8, "factory_line", "Stage the factory line settings"},
 	{9, "factory_all", "Stage all factory values"},
+	{
+		10, "try_line",
+		"Use the active line settings now; the old ones again if no valid request comes within line_confirm_s",
+	},
 };
 
 static const struct levelwind_value result_values[] = {
@@ -179,6 +183,13 @@ static const struct levelwind_value reason_values[] = {
 		47, "debounce_too_long",
 		"At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced",
 	},
+	{60, "locked", "The write lock is closed: write the code to the register unlock"},
+	{61, "wrong_code", "This is not the code of the write lock"},
+	{62, "unlock_wait", "After a wrong code: wait before the next try, longer every time"},
+	{
+		63, "line_not_confirmed",
+		"No valid request came at the line settings on trial: the old ones are in use again",
+	},
 	{64, "unknown_file", "There is no file of this number"},
 	{65, "unknown_record", "The file has no record of this number"},
 	{66, "bad_reference_type", "The reference type of a group of file records must be 6"},
@@ -265,6 +276,11 @@ static const struct levelwind_value flag_values[] = {
 		"The active line settings differ from those in use: SAVE and restart",
 	},
 	{27, "held", "Stopped by command: write the mode, or index, to go on"},
+	{28, "locked", "The write lock is closed: parameters cannot be changed"},
+	{
+		29, "line_trial",
+		"Line settings are on trial: any valid request to this unit confirms them",
+	},
 };
 
 static const struct levelwind_value launch_inhibit_values[] = {
@@ -286,8 +302,8 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command", .unit = "",
 		.text = "Writing a code runs the command; reads the last one",
 		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_U16, .address = 0,
-		.words = 1, .min = 0, .max = 9, .default_value = 0, .values = command_values,
-		.value_count = 10,
+		.words = 1, .min = 0, .max = 10, .default_value = 0, .values = command_values,
+		.value_count = 11,
 	},
 	{
 		.name = "mode", .unit = "",
@@ -313,6 +329,12 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Live shift of reversal_minus, applied in the sweep only",
 		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_I16, .address = 4,
 		.words = 1, .min = -20000, .max = 20000, .default_value = 0,
+	},
+	{
+		.name = "unlock", .unit = "",
+		.text = "Writing lock_code opens the write lock for lock_timeout_s, writing 0 closes it; reads 0",
+		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_U32, .address = 10,
+		.words = 2, .min = 0, .max = 999999, .default_value = 0,
 	},
 	{
 		.name = "encoder_pulses_per_rev", .unit = "pulses",
@@ -620,6 +642,24 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.value_count = 4,
 	},
 	{
+		.name = "lock_code", .unit = "",
+		.text = "Code of the write lock, 0: no lock. Reads 1000000 if there is a code; writing 1000000 keeps it",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 184,
+		.words = 2, .min = 0, .max = 1000000, .default_value = 0,
+	},
+	{
+		.name = "lock_timeout_s", .unit = "s",
+		.text = "The write lock closes by itself this long after it was opened",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 186,
+		.words = 1, .min = 10, .max = 3600, .default_value = 300,
+	},
+	{
+		.name = "line_confirm_s", .unit = "s",
+		.text = "How long try_line waits for a valid request",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 187,
+		.words = 1, .min = 2, .max = 120, .default_value = 10,
+	},
+	{
 		.name = "self_test", .unit = "",
 		.text = "Always 0x12345678: the master's word order is right when it reads so",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 0,
@@ -675,7 +715,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "All discrete inputs in one pair, bit number = discrete input address",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 103,
 		.words = 2, .offset = offsetof(struct levelwind_status, flags),
-		.values = flag_values, .value_count = 28,
+		.values = flag_values, .value_count = 30,
 	},
 	{
 		.name = "launch_inhibit", .unit = "",
@@ -865,7 +905,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_code", .unit = "", .text = "The last command",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 401,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_code),
-		.values = command_values, .value_count = 10,
+		.values = command_values, .value_count = 11,
 	},
 	{
 		.name = "command_result", .unit = "", .text = "How it ended",
@@ -877,7 +917,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_reason", .unit = "", .text = "Why it was refused or failed",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 403,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_reason),
-		.values = reason_values, .value_count = 44,
+		.values = reason_values, .value_count = 48,
 	},
 	{
 		.name = "command_address", .unit = "",
@@ -900,7 +940,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Why the last refused request was refused", .block = LEVELWIND_BLOCK_STATUS,
 		.type = LEVELWIND_TYPE_U16, .address = 410, .words = 1,
 		.offset = offsetof(struct levelwind_status, last_error_reason),
-		.values = reason_values, .value_count = 44,
+		.values = reason_values, .value_count = 48,
 	},
 	{
 		.name = "last_error_function", .unit = "", .text = "Its function code",

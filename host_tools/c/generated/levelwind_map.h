@@ -123,6 +123,11 @@ enum levelwind_command {
 	LEVELWIND_COMMAND_FACTORY_LINE = 8,
 	/** Stage all factory values */
 	LEVELWIND_COMMAND_FACTORY_ALL = 9,
+	/**
+	 * Use the active line settings now; the old ones again if no valid request comes within
+	 * line_confirm_s
+	 */
+	LEVELWIND_COMMAND_TRY_LINE = 10,
 };
 
 /** How the last command ended */
@@ -239,6 +244,14 @@ enum levelwind_reason {
 	 * reversal point before the switch is debounced
 	 */
 	LEVELWIND_REASON_DEBOUNCE_TOO_LONG = 47,
+	/** The write lock is closed: write the code to the register unlock */
+	LEVELWIND_REASON_LOCKED = 60,
+	/** This is not the code of the write lock */
+	LEVELWIND_REASON_WRONG_CODE = 61,
+	/** After a wrong code: wait before the next try, longer every time */
+	LEVELWIND_REASON_UNLOCK_WAIT = 62,
+	/** No valid request came at the line settings on trial: the old ones are in use again */
+	LEVELWIND_REASON_LINE_NOT_CONFIRMED = 63,
 	/** There is no file of this number */
 	LEVELWIND_REASON_UNKNOWN_FILE = 64,
 	/** The file has no record of this number */
@@ -357,6 +370,10 @@ enum levelwind_flag {
 	LEVELWIND_FLAG_RESTART_NEEDED = 26,
 	/** Stopped by command: write the mode, or index, to go on */
 	LEVELWIND_FLAG_HELD = 27,
+	/** The write lock is closed: parameters cannot be changed */
+	LEVELWIND_FLAG_LOCKED = 28,
+	/** Line settings are on trial: any valid request to this unit confirms them */
+	LEVELWIND_FLAG_LINE_TRIAL = 29,
 };
 
 /** Bit numbers of levelwind_status.launch_inhibit */
@@ -395,6 +412,7 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_JOG                           2
 #define LEVELWIND_ADDRESS_TRIM_PLUS_UM                  3
 #define LEVELWIND_ADDRESS_TRIM_MINUS_UM                 4
+#define LEVELWIND_ADDRESS_UNLOCK                        10
 #define LEVELWIND_ADDRESS_ENCODER_PULSES_PER_REV        100
 #define LEVELWIND_ADDRESS_ENCODER_EDGES_PER_PULSE       101
 #define LEVELWIND_ADDRESS_ENCODER_RATIO_NUMERATOR       102
@@ -446,6 +464,9 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_UNIT_ID                       180
 #define LEVELWIND_ADDRESS_BAUD_RATE                     181
 #define LEVELWIND_ADDRESS_LINE_FORMAT                   183
+#define LEVELWIND_ADDRESS_LOCK_CODE                     184
+#define LEVELWIND_ADDRESS_LOCK_TIMEOUT_S                186
+#define LEVELWIND_ADDRESS_LINE_CONFIRM_S                187
 #define LEVELWIND_ADDRESS_SELF_TEST                     0
 #define LEVELWIND_ADDRESS_MAP_VERSION                   2
 #define LEVELWIND_ADDRESS_VERSION_MAJOR                 3
@@ -694,7 +715,7 @@ struct levelwind_point {
 	size_t value_count;
 };
 
-#define LEVELWIND_POINT_COUNT 122
+#define LEVELWIND_POINT_COUNT 126
 
 /** All points, by block and rising address */
 extern const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT];

@@ -11,7 +11,7 @@ const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT] = {
 	{
 		.address = 0, .count = 1, .offset = offsetof(struct lw_setpoints, command),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .min = 0,
-		.max = 9, .default_value = 0,
+		.max = 10, .default_value = 0,
 	},
 	{
 		.address = 1, .count = 1, .offset = offsetof(struct lw_setpoints, mode),
@@ -31,6 +31,11 @@ const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT] = {
 	{
 		.address = 4, .count = 1, .offset = offsetof(struct lw_setpoints, trim_minus_um),
 		.type = LW_TYPE_I16, .flags = LW_POINT_WRITABLE, .min = -20000, .max = 20000,
+		.default_value = 0,
+	},
+	{
+		.address = 10, .count = 1, .offset = offsetof(struct lw_setpoints, unlock),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE, .min = 0, .max = 999999,
 		.default_value = 0,
 	},
 };
@@ -311,6 +316,21 @@ const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT] = {
 		.address = 183, .count = 1, .offset = offsetof(struct lw_params, line_format),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_SCOPE_LINE, .min = 0,
 		.max = 3, .default_value = 0,
+	},
+	{
+		.address = 184, .count = 1, .offset = offsetof(struct lw_params, lock_code),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE | LW_POINT_SECRET, .min = 0,
+		.max = 1000000, .default_value = 0,
+	},
+	{
+		.address = 186, .count = 1, .offset = offsetof(struct lw_params, lock_timeout_s),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 10, .max = 3600,
+		.default_value = 300,
+	},
+	{
+		.address = 187, .count = 1, .offset = offsetof(struct lw_params, line_confirm_s),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_SCOPE_LINE, .min = 2,
+		.max = 120, .default_value = 10,
 	},
 };
 
@@ -757,6 +777,8 @@ const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT] = {
 	{.address = 25, .count = 1, .offset = 25, .type = LW_TYPE_BIT},
 	{.address = 26, .count = 1, .offset = 26, .type = LW_TYPE_BIT},
 	{.address = 27, .count = 1, .offset = 27, .type = LW_TYPE_BIT},
+	{.address = 28, .count = 1, .offset = 28, .type = LW_TYPE_BIT},
+	{.address = 29, .count = 1, .offset = 29, .type = LW_TYPE_BIT},
 };
 
 const uint8_t lw_map_coil_command[LW_MAP_COILS_COUNT] = {
@@ -827,4 +849,7 @@ const struct lw_params lw_params_default = {
 	.unit_id = 1,
 	.baud_rate = 19200,
 	.line_format = 0,
+	.lock_code = 0,
+	.lock_timeout_s = 300,
+	.line_confirm_s = 10,
 };

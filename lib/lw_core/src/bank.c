@@ -113,6 +113,12 @@ static int check_known(const struct lw_bank *bank, enum lw_space space, uint16_t
 	return 0;
 }
 
+/* What a secret reads as, and what leaves it alone when it is written. */
+static bool is_secret_mark(const struct lw_point *point, int64_t value)
+{
+	return (point->flags & LW_POINT_SECRET) && value == point->max;
+}
+
 /* One element from memory, sign-extended. The tables say where it is and how wide. */
 static uint64_t load(const void *image, const struct place *place)
 {
@@ -125,6 +131,9 @@ static uint64_t load(const void *image, const struct place *place)
 	} else {
 		memcpy(&narrow, at + place->element * sizeof(narrow), sizeof(narrow));
 		wide = narrow;
+	}
+	if ((place->point->flags & LW_POINT_SECRET) && wide != 0) {
+		wide = place->point->max;
 	}
 	return (uint64_t)wide;
 }
@@ -298,7 +307,8 @@ static int store(struct request *request, const struct place *place, uint32_t ad
 	const struct lw_bank_section *section = place->section;
 	int32_t value = signed_value(place, wire_value(request, place, address));
 
-	if (((place->point->flags & LW_POINT_COMMAND) != 0) == commands) {
+	if (((place->point->flags & LW_POINT_COMMAND) != 0) == commands &&
+	    !is_secret_mark(place->point, value)) {
 		section->store(section->context, place->point, place->element, value);
 	}
 	return 0;

@@ -29,11 +29,44 @@ static bool decoding_differs(const struct lw_params *a, const struct lw_params *
 	       old.invert_b != fresh.invert_b || old.invert_direction != fresh.invert_direction;
 }
 
+/** What the write lock guards. Commands that only make things safer are never locked. */
+static bool is_guarded(enum lw_command command)
+{
+	switch (command) {
+	case LW_COMMAND_APPLY:
+	case LW_COMMAND_REVERT:
+	case LW_COMMAND_SAVE:
+	case LW_COMMAND_FACTORY_MOTION:
+	case LW_COMMAND_FACTORY_LINE:
+	case LW_COMMAND_FACTORY_ALL:
+	case LW_COMMAND_TRY_LINE:
+		return true;
+	case LW_COMMAND_NONE:
+	case LW_COMMAND_INDEX:
+	case LW_COMMAND_STOP:
+	case LW_COMMAND_CLEAR_FAULT:
+		break;
+	}
+	return false;
+}
+
+int lw_device_check_lock(const struct lw_device *device, struct lw_refusal *why)
+{
+	if (lw_lock_is_closed(&device->lock, device->active.lock_code)) {
+		why->reason = LW_REASON_LOCKED;
+		return -EBUSY;
+	}
+	return 0;
+}
+
 int lw_device_allow_command(const struct lw_device *device, enum lw_command command,
 			    struct lw_refusal *why)
 {
 	const struct lw_controller *controller = &device->controller;
 
+	if (is_guarded(command) && lw_device_check_lock(device, why)) {
+		return -EBUSY;
+	}
 	switch (command) {
 	case LW_COMMAND_INDEX:
 		return lw_controller_allow_index(controller, why);
@@ -56,6 +89,7 @@ int lw_device_allow_command(const struct lw_device *device, enum lw_command comm
 	case LW_COMMAND_FACTORY_MOTION:
 	case LW_COMMAND_FACTORY_LINE:
 	case LW_COMMAND_FACTORY_ALL:
+	case LW_COMMAND_TRY_LINE:
 		return lw_controller_busy(controller, why);
 	case LW_COMMAND_NONE:
 	case LW_COMMAND_STOP:
@@ -84,6 +118,9 @@ static void apply(struct lw_device *device)
 
 	const bool need_index = lw_params_need_index(&device->active, &device->staged);
 
+	if (device->staged.lock_code != device->active.lock_code) {
+		device->lock.open = false; /* who SAVEs a code has shown to know it */
+	}
 	/* Nothing moves now: the interrupts only count edges, by the controller's own copies. */
 	device->active = device->staged;
 	device->derived = derived;
@@ -124,6 +161,10 @@ void lw_device_run_command(struct lw_device *device, enum lw_command command)
 		break;
 	case LW_COMMAND_FACTORY_ALL:
 		stage_factory(device, true, true);
+		break;
+	case LW_COMMAND_TRY_LINE:
+		device->command.result = LW_RESULT_IN_PROGRESS;
+		lw_device_line_try(device);
 		break;
 	case LW_COMMAND_NONE:
 		break;
@@ -199,14 +240,10 @@ void lw_device_init(struct lw_device *device, const struct lw_device_config *con
 	}
 	device->staged = device->active;
 	device->stored = device->active;
-	device->line = config->default_line ? lw_params_default : device->active;
 
 	lw_controller_init(&device->controller, &device->active, &device->derived, inputs, now_us);
 	lw_device_make_bank(device);
 	device->slave_config = (struct lw_slave_config){
-		.unit_id = config->unit_id ? config->unit_id : (uint8_t)device->line.unit_id,
-		.rtu.silence_us = config->silence_us ? config->silence_us
-						     : lw_rtu_silence_us(device->line.baud_rate),
 		.pdu.bank = &device->bank,
 		.pdu.device_id = {LW_PRODUCT_VENDOR, LW_PRODUCT_CODE, LW_VERSION_STRING,
 				  LW_PRODUCT_URL, LW_PRODUCT_NAME, LW_PRODUCT_CODE},
@@ -214,6 +251,7 @@ void lw_device_init(struct lw_device *device, const struct lw_device_config *con
 		.pdu.is_running = is_running,
 		.pdu.context = device,
 	};
+	lw_device_line_init(device);
 	lw_slave_init(&device->slave, &device->slave_config, slave_now_us);
 }
 
@@ -229,4 +267,6 @@ void lw_device_tick(struct lw_device *device, uint64_t now_us)
 	device->controller.master_lost = timeout_us > 0 && now_us - device->heard_us > timeout_us;
 	lw_controller_tick(&device->controller, now_us);
 	watch_command(device);
+	lw_lock_tick(&device->lock, now_us);
+	lw_device_line_tick(device);
 }

@@ -159,6 +159,9 @@ static int setpoints_allow(void *context, const struct lw_point *point, uint16_t
 		return allow_trim(device, value, controller->trim_minus_um, point, value, why);
 	case LW_ADDRESS_TRIM_MINUS_UM:
 		return allow_trim(device, controller->trim_plus_um, value, point, value, why);
+	case LW_ADDRESS_UNLOCK:
+		return lw_lock_allow(&device->lock, device->active.lock_code, (uint32_t)value,
+				     device->now_us, why);
 	default:
 		return 0;
 	}
@@ -193,6 +196,10 @@ static void setpoints_store(void *context, const struct lw_point *point, uint16_
 			lw_controller_set_trim(controller, controller->trim_plus_um, value);
 		}
 		break;
+	case LW_ADDRESS_UNLOCK:
+		lw_lock_write(&device->lock, (uint32_t)value,
+			      (uint32_t)device->active.lock_timeout_s, device->now_us);
+		break;
 	default:
 		break;
 	}
@@ -220,7 +227,7 @@ static int staged_allow(void *context, const struct lw_point *point, uint16_t el
 		why->reason = LW_REASON_BUSY_TRACKING;
 		return -EBUSY;
 	}
-	return 0;
+	return lw_device_check_lock(device, why);
 }
 
 static void staged_store(void *context, const struct lw_point *point, uint16_t element,

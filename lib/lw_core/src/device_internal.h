@@ -16,12 +16,35 @@
 int lw_device_allow_command(const struct lw_device *device, enum lw_command command,
 			    struct lw_refusal *why);
 
+/**
+ * May parameters be changed, as far as the write lock is concerned?
+ *
+ * @retval 0 yes
+ * @retval -EBUSY it is closed; `why->reason` says so
+ */
+int lw_device_check_lock(const struct lw_device *device, struct lw_refusal *why);
+
 /** Run an allowed command. */
 void lw_device_run_command(struct lw_device *device, enum lw_command command);
 
 /** Begin the account of a command in the registers command_*. */
 void lw_device_note_command(struct lw_device *device, enum lw_command command,
 			    enum lw_result result);
+
+/** Put the line settings of power-up in use; before lw_slave_init(). */
+void lw_device_line_init(struct lw_device *device);
+
+/** Do the active line settings differ from those in use? */
+bool lw_device_line_differs(const struct lw_device *device);
+
+/** Do line settings wait for a valid request? */
+bool lw_device_line_on_trial(const struct lw_device *device);
+
+/** Use the active line settings on trial. */
+void lw_device_line_try(struct lw_device *device);
+
+/** End a trial that is confirmed, or whose time is up. */
+void lw_device_line_tick(struct lw_device *device);
 
 /** Fill the list of sections. */
 void lw_device_make_bank(struct lw_device *device);

@@ -1,4 +1,4 @@
-#include "lw/device.h"
+#include "device_internal.h"
 
 #include <string.h>
 
@@ -45,9 +45,9 @@ static uint32_t flags(const struct lw_device *device, uint16_t launch_inhibit)
 	FLAG(CORRECTION_PENDING, (controller->motion.requests & LW_MOTION_REQUEST_CORRECTION) != 0);
 	FLAG(STEPPER_ENABLED, lw_controller_stepper_enabled(controller));
 	FLAG(HELD, controller->held);
-	FLAG(RESTART_NEEDED, device->active.unit_id != device->line.unit_id ||
-				     device->active.baud_rate != device->line.baud_rate ||
-				     device->active.line_format != device->line.line_format);
+	FLAG(RESTART_NEEDED, lw_device_line_differs(device));
+	FLAG(LOCKED, lw_lock_is_closed(&device->lock, device->active.lock_code));
+	FLAG(LINE_TRIAL, lw_device_line_on_trial(device));
 #undef FLAG
 	return bits;
 }

@@ -20,6 +20,11 @@ void lw_rtu_init(struct lw_rtu *rtu, const struct lw_rtu_config *config)
 	*rtu = (struct lw_rtu){.config = *config};
 }
 
+void lw_rtu_reconfigure(struct lw_rtu *rtu, const struct lw_rtu_config *config)
+{
+	rtu->config = *config;
+}
+
 uint64_t lw_rtu_deadline_us(const struct lw_rtu *rtu)
 {
 	return rtu->length == 0 ? UINT64_MAX : rtu->last_byte_us + rtu->config.silence_us;

@@ -9,8 +9,14 @@ void lw_slave_init(struct lw_slave *slave, const struct lw_slave_config *config,
 {
 	slave->config = config;
 	slave->last_request_us = now_us;
+	slave->own_requests = 0;
 	lw_rtu_init(&slave->rtu, &config->rtu);
 	lw_pdu_init(&slave->pdu, &config->pdu);
+}
+
+void lw_slave_reconfigure(struct lw_slave *slave)
+{
+	lw_rtu_reconfigure(&slave->rtu, &slave->config->rtu);
 }
 
 uint64_t lw_slave_deadline_us(const struct lw_slave *slave)
@@ -36,6 +42,7 @@ static size_t handle_frame(struct lw_slave *slave, uint64_t now_us, const uint8_
 		pdu->counters[LW_BUS_NO_RESPONSES]++;
 		return 0;
 	}
+	slave->own_requests += unit_id != BROADCAST;
 	response_length = lw_pdu_handle(pdu, request, length - 1, &tx[1]);
 	if (!was_listening_only || !pdu->listen_only) {
 		slave->last_request_us = now_us;

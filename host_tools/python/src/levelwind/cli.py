@@ -8,7 +8,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from levelwind.commands import bench, field, offline, operate, parameters
+from levelwind.commands import access, bench, field, offline, operate, parameters
 from levelwind.errors import ToolError
 
 EXIT_INTERRUPTED = 130
@@ -58,6 +58,9 @@ for panel, commands in {
         "revert": parameters.revert,
         "save": parameters.save,
         "factory": parameters.factory,
+        "unlock": access.unlock,
+        "lock": access.lock,
+        "line": access.line,
         "backup": field.backup,
         "restore": field.restore,
         "run": field.run,

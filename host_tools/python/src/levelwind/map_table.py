@@ -147,6 +147,11 @@ class Command(MapEnum):
     )
     FACTORY_LINE = 8, "factory_line", "Stage the factory line settings"
     FACTORY_ALL = 9, "factory_all", "Stage all factory values"
+    TRY_LINE = (
+        10,
+        "try_line",
+        "Use the active line settings now; the old ones again if no valid request comes within line_confirm_s",
+    )
 
 
 class Result(MapEnum):
@@ -273,6 +278,18 @@ class Reason(MapEnum):
         47,
         "debounce_too_long",
         "At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced",
+    )
+    LOCKED = 60, "locked", "The write lock is closed: write the code to the register unlock"
+    WRONG_CODE = 61, "wrong_code", "This is not the code of the write lock"
+    UNLOCK_WAIT = (
+        62,
+        "unlock_wait",
+        "After a wrong code: wait before the next try, longer every time",
+    )
+    LINE_NOT_CONFIRMED = (
+        63,
+        "line_not_confirmed",
+        "No valid request came at the line settings on trial: the old ones are in use again",
     )
     UNKNOWN_FILE = 64, "unknown_file", "There is no file of this number"
     UNKNOWN_RECORD = 65, "unknown_record", "The file has no record of this number"
@@ -510,6 +527,12 @@ class Flag(MapEnum):
         "The active line settings differ from those in use: SAVE and restart",
     )
     HELD = 27, "held", "Stopped by command: write the mode, or index, to go on"
+    LOCKED = 28, "locked", "The write lock is closed: parameters cannot be changed"
+    LINE_TRIAL = (
+        29,
+        "line_trial",
+        "Line settings are on trial: any valid request to this unit confirms them",
+    )
 
 
 class LaunchInhibit(MapEnum):
@@ -558,6 +581,7 @@ class Point:
     writable: bool = False
     command: bool = False  # writing a value other than 0 runs a command
     reindex: bool = False  # a change makes the index invalid
+    secret: bool = False  # reads max if it is not 0; writing max keeps it
     enum: type[MapEnum] | None = None  # names of the values
     bits: type[MapEnum] | None = None  # names of the bits, by bit number
     mirrors: dict[str, int] = field(default_factory=dict)  # input register addresses by copy
@@ -902,6 +926,22 @@ POINTS: dict[str, Point] = {
             block="discretes",
         ),
         Point(
+            name="locked",
+            address=28,
+            space="discrete",
+            type="bit",
+            text="The write lock is closed: parameters cannot be changed",
+            block="discretes",
+        ),
+        Point(
+            name="line_trial",
+            address=29,
+            space="discrete",
+            type="bit",
+            text="Line settings are on trial: any valid request to this unit confirms them",
+            block="discretes",
+        ),
+        Point(
             name="command",
             address=0,
             space="holding",
@@ -909,7 +949,7 @@ POINTS: dict[str, Point] = {
             text="Writing a code runs the command; reads the last one",
             block="setpoints",
             min=0,
-            max=9,
+            max=10,
             default=0,
             writable=True,
             command=True,
@@ -964,6 +1004,19 @@ POINTS: dict[str, Point] = {
             max=20000,
             default=0,
             unit="um",
+            writable=True,
+        ),
+        Point(
+            name="unlock",
+            address=10,
+            space="holding",
+            type="u32",
+            text="Writing lock_code opens the write lock for lock_timeout_s, writing 0 closes it; reads 0",
+            block="setpoints",
+            words=2,
+            min=0,
+            max=999999,
+            default=0,
             writable=True,
         ),
         Point(
@@ -1775,6 +1828,52 @@ POINTS: dict[str, Point] = {
             writable=True,
             enum=LineFormat,
             mirrors={"active": 1183, "stored": 2183},
+        ),
+        Point(
+            name="lock_code",
+            address=184,
+            space="holding",
+            type="u32",
+            text="Code of the write lock, 0: no lock. Reads 1000000 if there is a code; writing 1000000 keeps it",
+            block="parameters",
+            words=2,
+            min=0,
+            max=1000000,
+            default=0,
+            scope="motion",
+            writable=True,
+            secret=True,
+            mirrors={"active": 1184, "stored": 2184},
+        ),
+        Point(
+            name="lock_timeout_s",
+            address=186,
+            space="holding",
+            type="u16",
+            text="The write lock closes by itself this long after it was opened",
+            block="parameters",
+            min=10,
+            max=3600,
+            default=300,
+            unit="s",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1186, "stored": 2186},
+        ),
+        Point(
+            name="line_confirm_s",
+            address=187,
+            space="holding",
+            type="u16",
+            text="How long try_line waits for a valid request",
+            block="parameters",
+            min=2,
+            max=120,
+            default=10,
+            unit="s",
+            scope="line",
+            writable=True,
+            mirrors={"active": 1187, "stored": 2187},
         ),
         Point(
             name="self_test",

@@ -31,6 +31,8 @@ NOTICES = (
     Flag.TRIM_PENDING,
     Flag.CORRECTION_PENDING,
     Flag.RESTART_NEEDED,
+    Flag.LOCKED,
+    Flag.LINE_TRIAL,
 )
 BAR_CELLS = 48
 

@@ -132,6 +132,11 @@ enum lw_command {
 	LW_COMMAND_FACTORY_LINE = 8,
 	/** Stage all factory values */
 	LW_COMMAND_FACTORY_ALL = 9,
+	/**
+	 * Use the active line settings now; the old ones again if no valid request comes within
+	 * line_confirm_s
+	 */
+	LW_COMMAND_TRY_LINE = 10,
 };
 
 /** How the last command ended */
@@ -248,6 +253,14 @@ enum lw_reason {
 	 * reversal point before the switch is debounced
 	 */
 	LW_REASON_DEBOUNCE_TOO_LONG = 47,
+	/** The write lock is closed: write the code to the register unlock */
+	LW_REASON_LOCKED = 60,
+	/** This is not the code of the write lock */
+	LW_REASON_WRONG_CODE = 61,
+	/** After a wrong code: wait before the next try, longer every time */
+	LW_REASON_UNLOCK_WAIT = 62,
+	/** No valid request came at the line settings on trial: the old ones are in use again */
+	LW_REASON_LINE_NOT_CONFIRMED = 63,
 	/** There is no file of this number */
 	LW_REASON_UNKNOWN_FILE = 64,
 	/** The file has no record of this number */
@@ -505,6 +518,10 @@ enum lw_flag {
 	LW_FLAG_RESTART_NEEDED = 26,
 	/** Stopped by command: write the mode, or index, to go on */
 	LW_FLAG_HELD = 27,
+	/** The write lock is closed: parameters cannot be changed */
+	LW_FLAG_LOCKED = 28,
+	/** Line settings are on trial: any valid request to this unit confirms them */
+	LW_FLAG_LINE_TRIAL = 29,
 };
 
 /** Bit numbers of lw_status.launch_inhibit */
@@ -545,6 +562,7 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_JOG           2
 #define LW_ADDRESS_TRIM_PLUS_UM  3
 #define LW_ADDRESS_TRIM_MINUS_UM 4
+#define LW_ADDRESS_UNLOCK        10
 
 /* Block parameters: holding registers. */
 #define LW_ADDRESS_ENCODER_PULSES_PER_REV        100
@@ -598,6 +616,9 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_UNIT_ID                       180
 #define LW_ADDRESS_BAUD_RATE                     181
 #define LW_ADDRESS_LINE_FORMAT                   183
+#define LW_ADDRESS_LOCK_CODE                     184
+#define LW_ADDRESS_LOCK_TIMEOUT_S                186
+#define LW_ADDRESS_LINE_CONFIRM_S                187
 
 /* Added to an address of block parameters: the active set, as input registers. */
 #define LW_MAP_ACTIVE_ADDRESS_OFFSET 1000
@@ -717,6 +738,10 @@ struct lw_setpoints {
 	int32_t trim_plus_um;
 	/** Live shift of reversal_minus, applied in the sweep only [um] */
 	int32_t trim_minus_um;
+	/**
+	 * Writing lock_code opens the write lock for lock_timeout_s, writing 0 closes it; reads 0
+	 */
+	uint32_t unlock;
 };
 
 /**
@@ -832,6 +857,15 @@ struct lw_params {
 	 * lw_line_format)
 	 */
 	int32_t line_format;
+	/**
+	 * Code of the write lock, 0: no lock. Reads 1000000 if there is a code; writing 1000000
+	 * keeps it
+	 */
+	uint32_t lock_code;
+	/** The write lock closes by itself this long after it was opened [s] */
+	int32_t lock_timeout_s;
+	/** How long try_line waits for a valid request [s] */
+	int32_t line_confirm_s;
 };
 
 /**
@@ -1041,7 +1075,7 @@ struct lw_bench {
 	int32_t bench_profile[60];
 };
 
-#define LW_MAP_SETPOINTS_COUNT 5
+#define LW_MAP_SETPOINTS_COUNT 6
 
 /**
  * Commands and set-points, effective at once, never stored: holding registers, offsets in struct
@@ -1049,7 +1083,7 @@ struct lw_bench {
  */
 extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
 
-#define LW_MAP_PARAMS_COUNT 51
+#define LW_MAP_PARAMS_COUNT 54
 
 /**
  * Parameters (staged). APPLY makes them active, SAVE stores the active set: holding registers,
@@ -1077,7 +1111,7 @@ extern const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT];
 /** Coils, indexed by address */
 extern const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT];
 
-#define LW_MAP_DISCRETES_COUNT 28
+#define LW_MAP_DISCRETES_COUNT 30
 
 /** Discrete inputs, indexed by address */
 extern const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT];

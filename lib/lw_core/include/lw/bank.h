@@ -54,7 +54,8 @@ struct lw_bank_section {
 		     struct lw_refusal *why);
 
 	/**
-	 * Take one allowed value. Cannot fail. Called in ascending address order, but for commands
+	 * Take one allowed value. Cannot fail. Not called for the value of a secret that keeps it
+	 * (LW_POINT_SECRET). Called in ascending address order, but for commands
 	 * after everything else. NULL: read only.
 	 */
 	void (*store)(void *context, const struct lw_point *point, uint16_t element, int32_t value);

@@ -15,6 +15,7 @@
 
 #include "lw/bank.h"
 #include "lw/controller.h"
+#include "lw/lock.h"
 #include "lw/map.h"
 #include "lw/params.h"
 #include "lw/record.h"
@@ -47,6 +48,21 @@ struct lw_device_command {
 	struct lw_refusal why;
 };
 
+/** Settings of the serial line. */
+struct lw_line {
+	uint8_t unit_id;
+	uint32_t baud_rate;
+	enum lw_line_format format;
+};
+
+/** Line settings on trial: the command try_line. */
+struct lw_line_trial {
+	bool running;
+	struct lw_line before; /**< used again if nothing is heard */
+	uint32_t own_requests; /**< lw_slave.own_requests when it began; any more confirm it */
+	uint64_t ends_us;
+};
+
 /** State. The host reads; everything is written by the functions here and by the slave. */
 struct lw_device {
 	struct lw_controller controller;
@@ -57,7 +73,14 @@ struct lw_device {
 	struct lw_params stored;
 	struct lw_derived derived; /**< of the active set */
 	bool defaults_loaded;      /**< no usable record at power-up */
-	struct lw_params line;     /**< set whose line settings are in use */
+	struct lw_lock lock;       /**< of the active set's lock_code */
+
+	/**
+	 * Line settings in use. The host makes its port so whenever they have changed, but never
+	 * while it sends an answer.
+	 */
+	struct lw_line line;
+	struct lw_line_trial line_trial;
 
 	struct lw_device_command command;
 

@@ -32,6 +32,7 @@ enum lw_point_flag {
 	LW_POINT_SCOPE_LINE = 1 << 1, /**< parameter of the serial line, else of the motion */
 	LW_POINT_REINDEX = 1 << 2,    /**< parameter whose change makes the index invalid */
 	LW_POINT_COMMAND = 1 << 3,    /**< writing a non-zero value runs a command */
+	LW_POINT_SECRET = 1 << 4,     /**< reads `max` unless it is 0; writing `max` keeps it */
 };
 
 /** One register value, array of values, or bit of the map. */

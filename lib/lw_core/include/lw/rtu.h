@@ -44,6 +44,9 @@ uint32_t lw_rtu_silence_us(uint32_t baud);
 /** Start with an empty buffer. */
 void lw_rtu_init(struct lw_rtu *rtu, const struct lw_rtu_config *config);
 
+/** Take other times; what has been received stays. */
+void lw_rtu_reconfigure(struct lw_rtu *rtu, const struct lw_rtu_config *config);
+
 /**
  * Take bytes from the line. The bytes of one call count as having followed each other closely.
  *

@@ -32,10 +32,18 @@ struct lw_slave {
 	 * lw_slave_init(). For watching the master. What listen-only mode ignores does not count.
 	 */
 	uint64_t last_request_us;
+	/** Intact frames to this unit so far; broadcasts do not count. Nothing sets it back. */
+	uint32_t own_requests;
 };
 
 /** Start with empty buffers and counters. `config` must outlive the slave. */
 void lw_slave_init(struct lw_slave *slave, const struct lw_slave_config *config, uint64_t now_us);
+
+/**
+ * Take over what has changed in the configuration: unit id and times. May be called while a request
+ * is executed, which is still answered by the old unit id.
+ */
+void lw_slave_reconfigure(struct lw_slave *slave);
 
 /**
  * Take bytes from the line. If they begin a new frame and the one before was never polled, that one
