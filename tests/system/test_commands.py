@@ -12,7 +12,7 @@ MOVING = {
 }
 SET_COMMANDS = {
     *(Command.APPLY, Command.REVERT, Command.SAVE),
-    *(Command.FACTORY_MOTION, Command.FACTORY_LINE, Command.FACTORY_ALL),
+    *(Command.FACTORY_MOTION, Command.FACTORY_LINE, Command.FACTORY_ALL, Command.TRY_LINE),
 }
 
 
