@@ -187,6 +187,31 @@ size_t lw_native_world_request(struct lw_world *world, const uint8_t *request, s
 	return lw_pdu_handle(&world->device.slave.pdu, request, length, response);
 }
 
+/**
+ * Bytes on the controller's line, then time.
+ *
+ * @param count may be 0: time only
+ * @param answer receives what the slave sends within that time
+ * @return bytes of the answer, 0 if there is none
+ */
+size_t lw_native_world_line(struct lw_world *world, const uint8_t *bytes, size_t count,
+			    uint64_t duration_ns, uint8_t answer[LW_RTU_FRAME_MAX])
+{
+	struct lw_slave *slave = &world->device.slave;
+	const uint64_t end_ns = world->now_ns + duration_ns;
+	uint64_t deadline_us;
+	size_t length = 0;
+
+	lw_slave_receive(slave, bytes, count, world->now_ns / 1000u);
+	deadline_us = lw_slave_deadline_us(slave);
+	if (deadline_us <= end_ns / 1000u) {
+		lw_world_run(world, deadline_us * 1000u);
+		length = lw_slave_poll(slave, deadline_us, answer);
+	}
+	lw_world_run(world, end_ns);
+	return length;
+}
+
 /** lw_plant_inject() on the world's plant. */
 int lw_native_world_inject(struct lw_world *world, int fault, int32_t argument)
 {

@@ -19,6 +19,7 @@ from levelwind.map_table import POINTS, Command, Fault, Flag, Mode, Reason, Resu
 from levelwind.points import encode, lookup, runs
 
 PDU_MAX = 253
+FRAME_MAX = 256
 REGISTERS_MAX = 120
 USTEP = 65536
 
@@ -71,6 +72,7 @@ def _library() -> ctypes.CDLL:
         ("destroy", None, (world,)),
         ("run_ns", None, (world, c_uint64)),
         ("request", c_size_t, (world, ctypes.c_char_p, c_size_t, POINTER(c_uint8))),
+        ("line", c_size_t, (world, ctypes.c_char_p, c_size_t, c_uint64, POINTER(c_uint8))),
         ("inject", c_int, (world, c_int, c_int32)),
         ("truth", None, (world, POINTER(Truth))),
     ):
@@ -142,6 +144,14 @@ class World:
         """One Modbus request, function code and data, and its answer."""
         length = self._library.lw_native_world_request(self._world, pdu, len(pdu), self._answer)
         return bytes(self._answer[:length])
+
+    def line(self, frame: bytes, seconds: float) -> bytes:
+        """Bytes on the line, then time; what the slave has sent in it."""
+        answer = (c_uint8 * FRAME_MAX)()
+        length = self._library.lw_native_world_line(
+            self._world, frame, len(frame), round(seconds * 1e9), answer
+        )
+        return bytes(answer[:length])
 
     def _checked(self, pdu: bytes) -> bytes:
         answer = self.request(pdu)

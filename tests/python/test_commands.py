@@ -46,7 +46,7 @@ class Controller(FakeClient):
 @pytest.fixture(autouse=True)
 def controller(monkeypatch: pytest.MonkeyPatch) -> type[Controller]:
     monkeypatch.setattr(device_module, "ModbusSerialClient", Controller)
-    monkeypatch.setattr(device_module, "_check_port", lambda port: None)
+    monkeypatch.setattr(device_module, "check_port", lambda port: None)
     monkeypatch.setattr(Controller, "values", {})
     monkeypatch.setattr(motion, "JOG_REWRITE_S", 0)
     monkeypatch.setattr(motion, "REST_POLL_S", 0)

@@ -13,7 +13,7 @@ from python.fake_client import OVERFLOW, FakeClient
 @pytest.fixture
 def device(monkeypatch: pytest.MonkeyPatch) -> Device:
     monkeypatch.setattr(device_module, "ModbusSerialClient", FakeClient)
-    monkeypatch.setattr(device_module, "_check_port", lambda port: None)
+    monkeypatch.setattr(device_module, "check_port", lambda port: None)
     return Device(Line("/dev/null"))
 
 
@@ -87,4 +87,4 @@ def test_a_command_that_does_not_end_is_given_up(device: Device):
 def test_a_pseudo_terminal_is_opened_without_parity(tmp_path: Any, target: str):
     link = tmp_path / "port"
     link.symlink_to(target)
-    assert device_module._parity(Line(str(link))) == ("N" if "pts" in target else "E")
+    assert device_module.parity(Line(str(link))) == ("N" if "pts" in target else "E")

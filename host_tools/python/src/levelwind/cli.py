@@ -8,7 +8,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from levelwind.commands import access, bench, field, offline, operate, parameters
+from levelwind.commands import access, bench, conformance, field, offline, operate, parameters
 from levelwind.errors import ToolError
 
 EXIT_INTERRUPTED = 130
@@ -74,6 +74,9 @@ for panel, commands in {
         "sim": bench.sim,
         "launch": bench.launch,
         "demo": bench.demo,
+    },
+    "Any Modbus RTU slave": {
+        "conformance": conformance.conformance,
     },
 }.items():
     for name, function in commands.items():

@@ -32,18 +32,28 @@ def _options(
     return Line(port, baud, line_format, unit, timeout)
 
 
-def with_device(function: Callable[..., None]) -> Callable[..., None]:
-    """Add the connection options to a command; it gets the open device as its first argument."""
+def with_line(function: Callable[..., None]) -> Callable[..., None]:
+    """Add the connection options to a command; it gets the line as its first argument."""
     own = list(inspect.signature(function).parameters.values())[1:]
     shared = list(inspect.signature(_options).parameters.values())
 
     @functools.wraps(function)
     def command(**arguments: object) -> None:
         line = _options(**{p.name: arguments.pop(p.name) for p in shared})
-        with Device(line) as device:
-            function(device, **arguments)
+        function(line, **arguments)
 
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in [*own, *shared]]
     command.__signature__ = inspect.Signature(parameters)
     command.__annotations__ = {p.name: p.annotation for p in parameters}
     return command
+
+
+def with_device(function: Callable[..., None]) -> Callable[..., None]:
+    """The same for a command that gets the open device."""
+
+    @functools.wraps(function)
+    def opened(line: Line, **arguments: object) -> None:
+        with Device(line) as device:
+            function(device, **arguments)
+
+    return with_line(opened)

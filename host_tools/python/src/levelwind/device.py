@@ -73,12 +73,12 @@ class Device:
             line.port,
             baudrate=line.baud,
             bytesize=int(line.format[0]),
-            parity=_parity(line),
+            parity=parity(line),
             stopbits=int(line.format[2]),
             timeout=line.timeout_s,
             retries=0,
         )
-        _check_port(line.port)
+        check_port(line.port)
         if not self._client.connect():
             raise ToolError(
                 f"{line.port} cannot be opened: is another program using it? "
@@ -264,12 +264,18 @@ class Device:
         return RefusedError(f"{name}: {why}")
 
 
-def _parity(line: Line) -> str:
+def is_pseudo_terminal(port: str) -> bool:
+    """Or a link to one."""
+    return os.path.realpath(port).startswith("/dev/pts/")
+
+
+def parity(line: Line) -> str:
     """A pseudo terminal has no parity bit, and refuses to be told of one."""
-    return "N" if os.path.realpath(line.port).startswith("/dev/pts/") else line.format[1]
+    return "N" if is_pseudo_terminal(line.port) else line.format[1]
 
 
-def _check_port(port: str) -> None:
+def check_port(port: str) -> None:
+    """ToolError says why a serial port cannot be opened."""
     if os.name != "posix":
         return
     path = Path(port)
