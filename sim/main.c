@@ -253,23 +253,23 @@ static void trace(void *context)
 {
 	struct simulator *simulator = context;
 	struct lw_world *world = &simulator->world;
-	const struct lw_motion *motion = &world->device.controller.motion;
+	const struct lw_motion_reading motion = lw_motion_read(&world->device.controller.motion);
 	const int state = (int)world->device.controller.state;
 	struct lw_plant_truth truth;
 
 	if (simulator->trace == NULL ||
-	    (motion->net_edges == simulator->traced_edges &&
-	     motion->steps == simulator->traced_steps && state == simulator->traced_state)) {
+	    (motion.net_edges == simulator->traced_edges &&
+	     motion.steps == simulator->traced_steps && state == simulator->traced_state)) {
 		return;
 	}
-	simulator->traced_edges = motion->net_edges;
-	simulator->traced_steps = motion->steps;
+	simulator->traced_edges = motion.net_edges;
+	simulator->traced_steps = motion.steps;
 	simulator->traced_state = state;
 	lw_plant_read_truth(&world->plant, &truth);
 	lw_device_refresh_status(&world->device);
 	fprintf(simulator->trace, "%llu,%d,%lld,%lld,%d,%d,%u,%.1f,%.0f,%u\n",
-		(unsigned long long)(world->now_ns / 1000000), state, (long long)motion->net_edges,
-		(long long)motion->pattern_edges, motion->law.m, motion->law.u, motion->steps,
+		(unsigned long long)(world->now_ns / 1000000), state, (long long)motion.net_edges,
+		(long long)motion.pattern_edges, motion.m, motion.u, motion.steps,
 		truth.carriage_um, truth.drum_milli_rpm, world->device.status_image.flags);
 }
 

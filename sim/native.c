@@ -71,8 +71,8 @@ int lw_native_replay(const struct lw_native_replay_setup *setup, const int32_t *
 		.dwell_plus_edges = (uint32_t)setup->dwell_plus_edges,
 		.dwell_minus_edges = (uint32_t)setup->dwell_minus_edges,
 	};
-	struct lw_law law = {.m = setup->m, .u = setup->u};
-	const int32_t pos_start = lw_law_pos_usteps(law.m);
+	struct lw_law law = lw_law_at(&window, setup->m, setup->u);
+	const int32_t pos_start = lw_law_pos_usteps(setup->m);
 
 	*result = (struct lw_native_replay_result){.min_pos = pos_start, .max_pos = pos_start};
 	for (size_t run = 0; run < run_count; run++) {
@@ -80,15 +80,15 @@ int lw_native_replay(const struct lw_native_replay_setup *setup, const int32_t *
 		const int64_t edges = runs[run] < 0 ? -(int64_t)runs[run] : runs[run];
 
 		for (int64_t i = 0; i < edges; i++) {
-			const int32_t pos = lw_law_pos_usteps(law.m);
+			const int32_t pos = lw_law_pos_usteps(lw_law_m(&law));
 
 			if (trace_pos != NULL && result->edges % (int64_t)trace_stride == 0 &&
 			    result->trace_count < trace_capacity) {
 				trace_pos[result->trace_count++] = pos;
 			}
 
-			const int step = lw_law_edge(&law, &window, dd);
-			const int32_t pos_after = lw_law_pos_usteps(law.m);
+			const int step = lw_law_edge(&law, dd);
+			const int32_t pos_after = lw_law_pos_usteps(lw_law_m(&law));
 
 			/* A start off the orbit runs away; end before it overflows. */
 			if (step > 1 || step < -1 || pos_after > INT16_MAX - 1 ||
@@ -106,7 +106,7 @@ int lw_native_replay(const struct lw_native_replay_setup *setup, const int32_t *
 			}
 		}
 	}
-	result->m = law.m;
+	result->m = lw_law_m(&law);
 	result->u = law.u;
 	result->dwell = (int32_t)law.dwell_edges;
 	return 0;

@@ -35,7 +35,7 @@ static struct change change_now(int side, struct lw_contacts contacts)
 
 	return (struct change){
 		.now_us = app_now_us(),
-		.at = {.pos_usteps = lw_law_pos_usteps(motion->law.m),
+		.at = {.pos_usteps = lw_law_pos_usteps(lw_motion_m(motion)),
 		       .direction = (int8_t)lw_motion_direction(motion)},
 		.contacts = contacts,
 		.side = (uint8_t)side,

@@ -9,6 +9,7 @@ set(LW_CORE_SOURCES
   src/device_line.c
   src/device_status.c
   src/homing.c
+  src/law.c
   src/limit_switch.c
   src/lock.c
   src/log.c

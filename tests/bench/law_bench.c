@@ -33,18 +33,15 @@ int main(int argc, char **argv)
 		return EXIT_FAILURE;
 	}
 	lw_controller_init(&controller, &params, &derived, &inputs, 0);
-	controller.motion.law.u = derived.ks;
-	controller.motion.source = LW_EDGE_SOURCE_ENCODER;
-
 	const bool reversal = strcmp(argv[1], "reversal") == 0;
 	const bool direction_change = strcmp(argv[1], "direction_change") == 0;
 
-	if (reversal) {
-		controller.motion.law.m = controller.motion.window->sweep_end;
-	}
+	lw_motion_place(&controller.motion, controller.motion.window,
+			reversal ? controller.motion.window->sweep_end : 0, derived.ks);
+	lw_motion_set_source(&controller.motion, LW_EDGE_SOURCE_ENCODER);
 	for (int i = 0; i < EDGES; i++) {
 		edge(&controller, &phase, direction_change && i % 2 ? -1 : 1);
 	}
-	printf("%u steps, at %d\n", controller.motion.steps, controller.motion.law.m);
+	printf("%u steps, at %d\n", controller.motion.steps, lw_motion_m(&controller.motion));
 	return EXIT_SUCCESS;
 }

@@ -33,7 +33,7 @@ static inline int64_t law_reversal_way(const struct lw_law_window *window, int64
 /** Is the state one of those that the pattern can reach? The inductive invariant of the law. */
 static inline bool law_on_orbit(const struct lw_law *law, const struct lw_law_window *window)
 {
-	const int64_t m = law->m;
+	const int64_t m = lw_law_m(law);
 	const int64_t end = window->sweep_end;
 	const int64_t begin = window->sweep_begin;
 	const int64_t ks = window->ks;
@@ -59,7 +59,7 @@ static inline bool law_on_orbit(const struct lw_law *law, const struct lw_law_wi
 
 static inline bool law_same(const struct lw_law *a, const struct lw_law *b)
 {
-	return a->m == b->m && a->u == b->u && a->dwell_edges == b->dwell_edges;
+	return lw_law_m(a) == lw_law_m(b) && a->u == b->u && a->dwell_edges == b->dwell_edges;
 }
 
 /** A small generator of numbers that look random, the same on every machine (Knuth's MMIX). */

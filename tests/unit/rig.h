@@ -136,9 +136,9 @@ static inline void rig_transition(int dd)
 /** Turn the drum by used edges, within no time. */
 static inline void rig_turn(int64_t edges)
 {
-	const int64_t end = rig.controller->motion.net_edges + edges;
+	const int64_t end = lw_motion_read(&rig.controller->motion).net_edges + edges;
 
-	while (rig.controller->motion.net_edges != end) {
+	while (lw_motion_read(&rig.controller->motion).net_edges != end) {
 		rig_transition(edges > 0 ? 1 : -1);
 	}
 }
@@ -200,7 +200,7 @@ static inline void rig_run_to_fault(enum lw_fault fault)
 /** The true place less what the controller believes. */
 static inline int32_t rig_error_usteps(void)
 {
-	return rig.carriage_usteps - lw_law_pos_usteps(rig.controller->motion.law.m);
+	return rig.carriage_usteps - lw_law_pos_usteps(lw_motion_m(&rig.controller->motion));
 }
 
 /** Pins now, with nothing pressed but what the place of the carriage says. */

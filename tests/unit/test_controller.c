@@ -56,7 +56,7 @@ static void test_power_up_is_unindexed_and_inhibited(void)
 	TEST_ASSERT_TRUE(lw_controller_stepper_enabled(rig.controller));
 	rig_turn(5000);
 	TEST_ASSERT_EQUAL_INT32(0, rig.carriage_usteps);
-	TEST_ASSERT_EQUAL_INT64(5000, rig.controller->motion.net_edges);
+	TEST_ASSERT_EQUAL_INT64(5000, lw_motion_read(&rig.controller->motion).net_edges);
 }
 
 static void test_hand_over_from_the_flange_keeps_the_orbit(void)
@@ -99,7 +99,7 @@ static void test_hand_over_only_onto_a_resting_drum(void)
 	TEST_ASSERT_EQUAL_INT(LW_STATE_READY, rig.controller->state);
 	rig_ticks(20);
 	TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
-	TEST_ASSERT_EQUAL_INT64(0, rig.controller->motion.pattern_edges);
+	TEST_ASSERT_EQUAL_INT64(0, lw_motion_read(&rig.controller->motion).pattern_edges);
 }
 
 static void test_a_slow_creep_counts_as_rest(void)

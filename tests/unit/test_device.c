@@ -605,13 +605,20 @@ static void test_status_while_tracking(void)
 	TEST_ASSERT_EQUAL_UINT32(rig.now_us / 1000, status()->uptime_ms);
 }
 
+/** As if that many edges had been counted: the upper half and the interrupt's counter. */
+static void set_net_edges(int64_t net_edges)
+{
+	rig.controller->motion.net_edges = net_edges;
+	rig.controller->motion.edges = (uint32_t)net_edges;
+}
+
 static void test_the_odometer_saturates(void)
 {
-	rig.controller->motion.net_edges = INT64_MAX / 2;
+	set_net_edges(INT64_MAX / 2);
 	TEST_ASSERT_EQUAL_INT32(INT32_MAX, status()->rope_mm);
-	rig.controller->motion.net_edges = -(INT64_MAX / 2);
+	set_net_edges(-(INT64_MAX / 2));
 	TEST_ASSERT_EQUAL_INT32(INT32_MIN, status()->rope_mm);
-	rig.controller->motion.net_edges = -2880;
+	set_net_edges(-2880);
 	TEST_ASSERT_EQUAL_INT32(-2400, status()->rope_mm);
 }
 

@@ -390,14 +390,14 @@ static void test_index_with_a_dwell_parks_at_the_flange_before_it(void)
 	run_to_ready();
 	TEST_ASSERT_EQUAL_UINT32(0, rig.controller->motion.law.dwell_edges);
 
-	const int32_t m = rig.controller->motion.law.m;
+	const int32_t m = lw_motion_m(&rig.controller->motion);
 
 	rig_rest();
 	TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
 	rig_turn(2880);
-	TEST_ASSERT_EQUAL_INT32(m, rig.controller->motion.law.m);
+	TEST_ASSERT_EQUAL_INT32(m, lw_motion_m(&rig.controller->motion));
 	rig_turn(1);
-	TEST_ASSERT_EQUAL_INT32(m + 23, rig.controller->motion.law.m);
+	TEST_ASSERT_EQUAL_INT32(m + 23, lw_motion_m(&rig.controller->motion));
 }
 
 int main(void)

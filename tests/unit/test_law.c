@@ -24,17 +24,25 @@ static struct lw_law law;
 static void use_set(size_t i)
 {
 	window = law_window(sets[i].ka, sets[i].nr, sets[i].plus_usteps, sets[i].minus_usteps);
-	law = (struct lw_law){.m = window.sweep_begin + (window.sweep_end - window.sweep_begin) / 2,
-			      .u = window.ks};
+	law = lw_law_at(&window, window.sweep_begin + (window.sweep_end - window.sweep_begin) / 2,
+			window.ks);
+}
+
+/** The law in the same place, with a dwell at either side. */
+static void use_dwell(uint32_t plus_edges, uint32_t minus_edges)
+{
+	window.dwell_plus_edges = plus_edges;
+	window.dwell_minus_edges = minus_edges;
+	lw_law_use(&law, &window);
 }
 
 /** One edge, with the properties that hold on every edge. */
 static void edge(int dd)
 {
-	const int32_t before_usteps = lw_law_pos_usteps(law.m);
-	const int step = lw_law_edge(&law, &window, dd);
+	const int32_t before_usteps = lw_law_pos_usteps(lw_law_m(&law));
+	const int step = lw_law_edge(&law, dd);
 
-	TEST_ASSERT_EQUAL_INT(lw_law_pos_usteps(law.m) - before_usteps, step);
+	TEST_ASSERT_EQUAL_INT(lw_law_pos_usteps(lw_law_m(&law)) - before_usteps, step);
 	TEST_ASSERT_TRUE_MESSAGE(-1 <= step && step <= 1, "P6: at most one step per edge");
 	TEST_ASSERT_TRUE_MESSAGE(law_on_orbit(&law, &window), "the state left the orbit");
 }
@@ -89,13 +97,13 @@ static void test_p1_forward_it_equals_the_block_diagram(void)
 	for (size_t i = 0; i < SET_COUNT; i++) {
 		use_set(i);
 
-		struct diagram diagram = {.m = law.m, .velocity = law.u, .dd_before = 1};
+		struct diagram diagram = {.m = lw_law_m(&law), .velocity = law.u, .dd_before = 1};
 
 		for (uint32_t edges = 4 * period_edges(); edges > 0; edges--) {
-			lw_law_edge(&law, &window, 1);
+			lw_law_edge(&law, 1);
 			diagram_edge(&diagram, 1, sets[i].ka, window.ks, sets[i].plus_usteps,
 				     sets[i].minus_usteps);
-			TEST_ASSERT_EQUAL_INT64(diagram.m, law.m);
+			TEST_ASSERT_EQUAL_INT64(diagram.m, lw_law_m(&law));
 			TEST_ASSERT_EQUAL_INT64(diagram.velocity, law.u);
 		}
 	}
@@ -106,11 +114,11 @@ static void assert_undone(void)
 	const struct lw_law state = law;
 	struct lw_law copy = law;
 
-	lw_law_edge(&copy, &window, 1);
-	lw_law_edge(&copy, &window, -1);
+	lw_law_edge(&copy, 1);
+	lw_law_edge(&copy, -1);
 	TEST_ASSERT_TRUE_MESSAGE(law_same(&state, &copy), "forward, backward");
-	lw_law_edge(&copy, &window, -1);
-	lw_law_edge(&copy, &window, 1);
+	lw_law_edge(&copy, -1);
+	lw_law_edge(&copy, 1);
 	TEST_ASSERT_TRUE_MESSAGE(law_same(&state, &copy), "backward, forward");
 }
 
@@ -119,8 +127,7 @@ static void test_p2_every_state_of_the_pattern_is_undone(void)
 	for (size_t i = 0; i < SET_COUNT; i++) {
 		for (uint32_t dwell_edges = 0; dwell_edges < 3; dwell_edges++) {
 			use_set(i);
-			window.dwell_plus_edges = dwell_edges;
-			window.dwell_minus_edges = 2 * dwell_edges;
+			use_dwell(dwell_edges, 2 * dwell_edges);
 			for (uint32_t edges = period_edges(); edges > 0; edges--) {
 				assert_undone();
 				edge(1);
@@ -134,13 +141,13 @@ static void test_p2_states_off_the_pattern_are_undone_too(void)
 	for (size_t i = 0; i < SET_COUNT; i++) {
 		use_set(i);
 
-		const int32_t places[] = {window.sweep_begin, window.sweep_end, 0, law.m};
+		const int32_t places[] = {window.sweep_begin, window.sweep_end, 0, lw_law_m(&law)};
 
 		for (size_t place = 0; place < 4; place++) {
 			for (int32_t offset = -70000; offset <= 70000; offset += 997) {
 				for (int32_t u = -window.ks; u <= window.ks;
 				     u += window.ks / 7 + 1) {
-					law = (struct lw_law){places[place] + offset, u, 0};
+					law = lw_law_at(&window, places[place] + offset, u);
 					assert_undone();
 				}
 			}
@@ -153,7 +160,7 @@ static void test_p3_the_sweep_slope_is_exactly_ks_for_ever(void)
 	for (size_t i = 0; i < SET_COUNT; i++) {
 		use_set(i);
 		for (uint32_t edges = 4 * period_edges(); edges > 0; edges--) {
-			const bool was_in_sweep = lw_law_region(&window, law.m) == 0;
+			const bool was_in_sweep = lw_law_region(&window, lw_law_m(&law)) == 0;
 
 			edge(1);
 			TEST_ASSERT_TRUE(-window.ks <= law.u && law.u <= window.ks);
@@ -170,25 +177,25 @@ static void check_reversal(int direction, int32_t nr, uint32_t dwell_edges)
 	uint32_t edges = 0;
 	int64_t farthest = 0;
 
-	while (lw_law_region(&window, law.m) != -direction) {
+	while (lw_law_region(&window, lw_law_m(&law)) != -direction) {
 		edge(1);
 	}
 
-	const int32_t entry = law.m;
+	const int32_t entry = lw_law_m(&law);
 
 	TEST_ASSERT_EQUAL_INT32(direction * window.ks, law.u);
 	do {
 		edge(1);
 		edges++;
-		if (direction * ((int64_t)law.m - entry) > farthest) {
-			farthest = direction * ((int64_t)law.m - entry);
+		if (direction * ((int64_t)lw_law_m(&law) - entry) > farthest) {
+			farthest = direction * ((int64_t)lw_law_m(&law) - entry);
 		}
 	} while (law.u != -direction * window.ks);
 
 	TEST_ASSERT_EQUAL_UINT32(2 * (uint32_t)nr + dwell_edges, edges);
 	TEST_ASSERT_EQUAL_INT64((int64_t)window.ks * (nr - 1) / 2, farthest);
-	TEST_ASSERT_EQUAL_INT32(entry - direction * window.ks, law.m);
-	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&window, law.m));
+	TEST_ASSERT_EQUAL_INT32(entry - direction * window.ks, lw_law_m(&law));
+	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&window, lw_law_m(&law)));
 }
 
 static void test_p4_p5_reversals_at_both_sides(void)
@@ -204,9 +211,9 @@ static void test_p4_p5_reversals_at_both_sides(void)
 		}
 		for (uint32_t edges = period_edges(); edges > 0; edges--) {
 			edge(1);
-			TEST_ASSERT_TRUE(lw_law_pos_usteps(law.m) <=
+			TEST_ASSERT_TRUE(lw_law_pos_usteps(lw_law_m(&law)) <=
 					 sets[i].plus_usteps + reach + 1);
-			TEST_ASSERT_TRUE(lw_law_pos_usteps(law.m) >=
+			TEST_ASSERT_TRUE(lw_law_pos_usteps(lw_law_m(&law)) >=
 					 sets[i].minus_usteps - reach - 1);
 		}
 	}
@@ -232,8 +239,7 @@ static void test_random_directions_stay_on_the_orbit_and_can_be_retraced(void)
 
 	for (size_t i = 0; i < SET_COUNT; i++) {
 		use_set(i);
-		window.dwell_plus_edges = (uint32_t)i % 3;
-		window.dwell_minus_edges = (uint32_t)i % 4;
+		use_dwell((uint32_t)i % 3, (uint32_t)i % 4);
 
 		const struct lw_law start = law;
 		struct lw_law straight = law;
@@ -249,7 +255,7 @@ static void test_random_directions_stay_on_the_orbit_and_can_be_retraced(void)
 			}
 		}
 		for (int64_t edges = net_edges; edges != 0; edges += edges > 0 ? -1 : 1) {
-			lw_law_edge(&straight, &window, net_edges > 0 ? 1 : -1);
+			lw_law_edge(&straight, net_edges > 0 ? 1 : -1);
 		}
 		TEST_ASSERT_TRUE(law_same(&straight, &law));
 		for (; net_edges != 0; net_edges += net_edges > 0 ? -1 : 1) {
@@ -263,16 +269,16 @@ static void test_p8_the_steepest_and_longest_reversal_fits(void)
 {
 	/* Ka 1, Nr 65535: its overshoot is 32766 microsteps, all that a position has. */
 	window = law_window(1, 65535, 0, -20000);
-	law = (struct lw_law){.m = 65534, .u = 65535};
+	law = lw_law_at(&window, 65534, 65535);
 	for (int i = 0; i < 2 * 65535; i++) {
 		edge(1);
 	}
-	TEST_ASSERT_EQUAL_INT32(-1, law.m);
+	TEST_ASSERT_EQUAL_INT32(-1, lw_law_m(&law));
 	TEST_ASSERT_EQUAL_INT32(-65535, law.u);
 	for (int i = 0; i < 2 * 65535; i++) {
 		edge(-1);
 	}
-	TEST_ASSERT_EQUAL_INT32(65534, law.m);
+	TEST_ASSERT_EQUAL_INT32(65534, lw_law_m(&law));
 }
 
 static void test_dwell_is_exact_to_one_edge_at_both_sides(void)
@@ -282,8 +288,7 @@ static void test_dwell_is_exact_to_one_edge_at_both_sides(void)
 
 		const uint32_t edges = period_edges();
 
-		window.dwell_plus_edges = 3;
-		window.dwell_minus_edges = 2880;
+		use_dwell(3, 2880);
 		TEST_ASSERT_EQUAL_UINT32(edges + 3 + 2880, period_edges());
 		check_reversal(1, sets[i].nr, 3);
 		check_reversal(-1, sets[i].nr, 2880);
@@ -293,11 +298,11 @@ static void test_dwell_is_exact_to_one_edge_at_both_sides(void)
 /** At the far point and through it in direction dd: edges at rest, then the first that moves. */
 static void check_rest(int dd, uint32_t dwell_edges)
 {
-	const int32_t m = law.m;
+	const int32_t m = lw_law_m(&law);
 
 	for (uint32_t i = 0; i < dwell_edges; i++) {
 		edge(dd);
-		TEST_ASSERT_EQUAL_INT32(m, law.m);
+		TEST_ASSERT_EQUAL_INT32(m, lw_law_m(&law));
 		TEST_ASSERT_EQUAL_INT32(0, law.u);
 	}
 	edge(dd);
@@ -310,9 +315,8 @@ static void test_dwell_rests_as_long_backward_as_forward(void)
 		const uint32_t dwell_edges = side > 0 ? 5 : 7;
 
 		use_set(0);
-		window.dwell_plus_edges = 5;
-		window.dwell_minus_edges = 7;
-		while (!(law.u == 0 && lw_law_region(&window, law.m) == -side)) {
+		use_dwell(5, 7);
+		while (!(law.u == 0 && lw_law_region(&window, lw_law_m(&law)) == -side)) {
 			edge(1);
 		}
 		check_rest(1, dwell_edges);

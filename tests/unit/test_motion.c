@@ -18,8 +18,8 @@ void setUp(void)
 	window = law_window(KA, NR, 8000, -8000);
 	other = law_window(KA, NR, 7000, -7000);
 	lw_motion_init(&motion, &window);
-	motion.law.u = KS;
-	motion.source = LW_EDGE_SOURCE_ENCODER;
+	lw_motion_place(&motion, &window, 0, KS);
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
 	steps_sum = 0;
 }
 
@@ -37,7 +37,7 @@ static void edges(int dd, int count)
 /** Forward to the first edge whose position is inside the reversal at a side. */
 static void enter_reversal(int region)
 {
-	while (lw_law_region(motion.window, motion.law.m) != region) {
+	while (lw_law_region(motion.window, lw_motion_m(&motion)) != region) {
 		edges(1, 1);
 	}
 }
@@ -46,7 +46,7 @@ static void request(uint8_t requests, const struct lw_law_window *to, int32_t co
 {
 	motion.request_window = to;
 	motion.request_correction_usteps = correction_usteps;
-	motion.requests = requests;
+	lw_motion_request(&motion, requests);
 }
 
 static void test_init_stands_still(void)
@@ -55,7 +55,7 @@ static void test_init_stands_still(void)
 	TEST_ASSERT_EQUAL_PTR(&window, motion.window);
 	TEST_ASSERT_EQUAL_UINT8(LW_EDGE_SOURCE_NONE, motion.source);
 	TEST_ASSERT_EQUAL_INT(0, lw_motion_direction(&motion));
-	TEST_ASSERT_EQUAL_INT32(0, motion.law.m);
+	TEST_ASSERT_EQUAL_INT32(0, lw_motion_m(&motion));
 }
 
 static void test_the_odometer_counts_whatever_moves_the_carriage(void)
@@ -64,12 +64,12 @@ static void test_the_odometer_counts_whatever_moves_the_carriage(void)
 					  LW_EDGE_SOURCE_ENCODER};
 
 	for (int i = 0; i < 3; i++) {
-		motion.source = sources[i];
+		lw_motion_set_source(&motion, (enum lw_edge_source)sources[i]);
 		edges(1, 100);
 		edges(-1, 30);
-		TEST_ASSERT_EQUAL_INT64(70 * (i + 1), motion.net_edges);
+		TEST_ASSERT_EQUAL_INT64(70 * (i + 1), lw_motion_read(&motion).net_edges);
 	}
-	TEST_ASSERT_EQUAL_INT64(70, motion.pattern_edges);
+	TEST_ASSERT_EQUAL_INT64(70, lw_motion_read(&motion).pattern_edges);
 }
 
 static void test_edges_of_another_source_do_not_move_it(void)
@@ -77,10 +77,10 @@ static void test_edges_of_another_source_do_not_move_it(void)
 	const struct lw_law before = motion.law;
 
 	TEST_ASSERT_EQUAL_INT(0, lw_motion_timer_edge(&motion));
-	motion.source = LW_EDGE_SOURCE_NONE;
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_NONE);
 	TEST_ASSERT_EQUAL_INT(0, lw_motion_timer_edge(&motion));
 	edges(1, 10);
-	motion.source = LW_EDGE_SOURCE_TIMER;
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_TIMER);
 	edges(1, 10);
 	TEST_ASSERT_EQUAL_INT32(0, steps_sum);
 	TEST_ASSERT_TRUE(law_same(&before, &motion.law));
@@ -92,26 +92,50 @@ static void test_edges_of_another_source_do_not_move_it(void)
 
 static void test_direction_follows_slope_and_drum(void)
 {
-	edges(1, 1);
+	/* Three edges give a step at least. */
+	edges(1, 3);
 	TEST_ASSERT_EQUAL_INT(1, lw_motion_direction(&motion));
-	edges(-1, 1);
+	edges(-1, 3);
 	TEST_ASSERT_EQUAL_INT(-1, lw_motion_direction(&motion));
 	motion.law.u = -KS;
+	edges(-1, 3);
 	TEST_ASSERT_EQUAL_INT(1, lw_motion_direction(&motion));
+	edges(1, 3);
+	TEST_ASSERT_EQUAL_INT(-1, lw_motion_direction(&motion));
 	motion.law.u = 0;
 	TEST_ASSERT_EQUAL_INT(0, lw_motion_direction(&motion));
 }
 
-static void test_reached_tells_the_side(void)
+static bool turned(enum lw_motion_side_bit side)
 {
-	edges(1, 100);
-	TEST_ASSERT_EQUAL_UINT8(0, motion.reached);
-	enter_reversal(-1);
-	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_PLUS, motion.reached);
-	motion.reached = 0;
-	enter_reversal(0);
-	enter_reversal(1);
-	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_PLUS | LW_MOTION_MINUS, motion.reached);
+	return lw_motion_take_turned(&motion, side);
+}
+
+static void test_a_slope_change_tells_its_side_once(void)
+{
+	for (int long_way = 0; long_way < 2; long_way++) {
+		setUp();
+		if (long_way) {
+			lw_motion_block(&motion, LW_MOTION_PLUS, true);
+		}
+		enter_reversal(-1);
+		TEST_ASSERT_FALSE(turned(LW_MOTION_PLUS) || turned(LW_MOTION_MINUS));
+		edges(1, 1);
+		TEST_ASSERT_FALSE(turned(LW_MOTION_MINUS));
+		TEST_ASSERT_TRUE(turned(LW_MOTION_PLUS));
+		TEST_ASSERT_FALSE(turned(LW_MOTION_PLUS));
+
+		/* Taking it back changes the slope, too. */
+		edges(-1, 1);
+		TEST_ASSERT_TRUE(turned(LW_MOTION_PLUS));
+		enter_reversal(-1);
+		enter_reversal(0);
+		enter_reversal(1);
+		TEST_ASSERT_TRUE(turned(LW_MOTION_PLUS));
+		edges(1, 1);
+		TEST_ASSERT_FALSE(turned(LW_MOTION_PLUS));
+		TEST_ASSERT_TRUE(turned(LW_MOTION_MINUS));
+	}
 }
 
 static void test_steps_equal_the_change_of_position_less_corrections(void)
@@ -130,7 +154,7 @@ static void test_steps_equal_the_change_of_position_less_corrections(void)
 		}
 		edges(dd, (int)(next_random(&seed) % 2000));
 		TEST_ASSERT_TRUE(law_on_orbit(&motion.law, &window));
-		TEST_ASSERT_EQUAL_INT32(lw_law_pos_usteps(motion.law.m),
+		TEST_ASSERT_EQUAL_INT32(lw_law_pos_usteps(lw_motion_m(&motion)),
 					steps_sum + corrections - motion.request_correction_usteps);
 	}
 }
@@ -138,14 +162,14 @@ static void test_steps_equal_the_change_of_position_less_corrections(void)
 static void test_a_window_waits_for_the_sweep_of_both(void)
 {
 	/* Between the two reversal points: in the sweep of the old one only. */
-	motion.law.m = 7500 * LW_USTEP;
+	lw_motion_place(&motion, motion.window, 7500 * LW_USTEP, motion.law.u);
 	request(LW_MOTION_REQUEST_WINDOW, &other, 0);
 	edges(1, 100);
 	TEST_ASSERT_EQUAL_PTR(&window, motion.window);
 	enter_reversal(-1);
 	edges(1, 2 * NR);
 	TEST_ASSERT_EQUAL_PTR(&window, motion.window);
-	while (motion.law.m >= 7000 * LW_USTEP) {
+	while (lw_motion_m(&motion) >= 7000 * LW_USTEP) {
 		TEST_ASSERT_EQUAL_PTR(&window, motion.window);
 		edges(1, 1);
 	}
@@ -156,7 +180,7 @@ static void test_a_window_waits_for_the_sweep_of_both(void)
 
 static void test_a_wider_window_waits_for_the_end_of_the_reversal(void)
 {
-	motion.window = &other;
+	lw_motion_place(&motion, &other, 0, KS);
 	enter_reversal(-1);
 	request(LW_MOTION_REQUEST_WINDOW, &window, 0);
 	for (int i = 1; i < 2 * NR; i++) {
@@ -172,7 +196,7 @@ static void test_a_correction_in_the_sweep_is_made_on_the_next_edge(void)
 {
 	request(LW_MOTION_REQUEST_CORRECTION, NULL, -123);
 	edges(1, 1);
-	TEST_ASSERT_EQUAL_INT32(KS - 123 * LW_USTEP, motion.law.m);
+	TEST_ASSERT_EQUAL_INT32(KS - 123 * LW_USTEP, lw_motion_m(&motion));
 	TEST_ASSERT_EQUAL_UINT8(0, motion.requests);
 	TEST_ASSERT_EQUAL_INT32(0, motion.request_correction_usteps);
 	TEST_ASSERT_EQUAL_INT32(0, steps_sum);
@@ -184,26 +208,26 @@ static void check_clamp(int side)
 	const int32_t border = side > 0 ? window.sweep_end : window.sweep_begin;
 
 	setUp();
-	motion.law.m = side * 7950 * LW_USTEP;
+	lw_motion_place(&motion, motion.window, side * 7950 * LW_USTEP, motion.law.u);
 	motion.law.u = side * KS;
 	request(LW_MOTION_REQUEST_CORRECTION, NULL, side * 200);
 	edges(1, 1);
 	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_CORRECTION, motion.requests);
-	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&window, motion.law.m));
-	TEST_ASSERT_TRUE(side * (border - motion.law.m) <= LW_USTEP);
+	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&window, lw_motion_m(&motion)));
+	TEST_ASSERT_TRUE(side * (border - lw_motion_m(&motion)) <= LW_USTEP);
 	TEST_ASSERT_INT32_WITHIN(2, side * 150, motion.request_correction_usteps);
 
 	/* What is kept counts down on the way back, while the law stays at the border. */
 	enter_reversal(-side);
 	edges(1, 2 * NR);
 	while (motion.requests) {
-		TEST_ASSERT_TRUE(side * (border - motion.law.m) <= 2 * LW_USTEP);
+		TEST_ASSERT_TRUE(side * (border - lw_motion_m(&motion)) <= 2 * LW_USTEP);
 		TEST_ASSERT_TRUE(law_on_orbit(&motion.law, &window));
 		edges(1, 1);
 	}
 	TEST_ASSERT_EQUAL_INT32(0, motion.request_correction_usteps);
 	TEST_ASSERT_EQUAL_INT32(side * 7950 + side * 200,
-				lw_law_pos_usteps(motion.law.m) - steps_sum);
+				lw_law_pos_usteps(lw_motion_m(&motion)) - steps_sum);
 }
 
 static void test_a_correction_beyond_the_border_keeps_its_rest(void)
@@ -215,11 +239,11 @@ static void test_a_correction_beyond_the_border_keeps_its_rest(void)
 static void test_rebase_takes_window_and_position_on_the_next_edge(void)
 {
 	window.sweep_end = INT32_MAX;
-	motion.law.m = 20000 * LW_USTEP;
+	lw_motion_place(&motion, &window, 20000 * LW_USTEP, motion.law.u);
 	request(LW_MOTION_REQUEST_REBASE, &other, -14000);
 	edges(1, 1);
 	TEST_ASSERT_EQUAL_PTR(&other, motion.window);
-	TEST_ASSERT_EQUAL_INT32(6000 * LW_USTEP + KS, motion.law.m);
+	TEST_ASSERT_EQUAL_INT32(6000 * LW_USTEP + KS, lw_motion_m(&motion));
 	TEST_ASSERT_EQUAL_UINT8(0, motion.requests);
 }
 
@@ -229,22 +253,23 @@ static void check_rebase(int32_t m, int32_t correction_usteps)
 	const int64_t wanted = (int64_t)m + KS + (int64_t)correction_usteps * LW_USTEP;
 
 	setUp();
-	window.sweep_begin = INT32_MIN;
+	window.sweep_begin = INT32_MIN + LW_USTEP;
 	window.sweep_end = INT32_MAX;
-	motion.law.m = m;
+	lw_motion_place(&motion, motion.window, m, motion.law.u);
 	request(LW_MOTION_REQUEST_REBASE, &other, correction_usteps);
 	edges(1, 1);
-	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&other, motion.law.m));
-	TEST_ASSERT_EQUAL_INT64(wanted, motion.law.m + (int64_t)motion.request_correction_usteps *
-							       LW_USTEP);
+	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&other, lw_motion_m(&motion)));
+	TEST_ASSERT_EQUAL_INT64(wanted,
+				lw_motion_m(&motion) +
+					(int64_t)motion.request_correction_usteps * LW_USTEP);
 	TEST_ASSERT_EQUAL_UINT8(motion.request_correction_usteps ? LW_MOTION_REQUEST_CORRECTION : 0,
 				motion.requests);
 	/* Not farther from the border than one microstep. */
 	if (wanted >= other.sweep_end) {
-		TEST_ASSERT_TRUE(motion.law.m >= other.sweep_end - LW_USTEP);
+		TEST_ASSERT_TRUE(lw_motion_m(&motion) >= other.sweep_end - LW_USTEP);
 	}
 	if (wanted < other.sweep_begin) {
-		TEST_ASSERT_TRUE(motion.law.m < other.sweep_begin + LW_USTEP);
+		TEST_ASSERT_TRUE(lw_motion_m(&motion) < other.sweep_begin + LW_USTEP);
 	}
 }
 
@@ -270,11 +295,11 @@ static void test_swap_takes_the_window_anywhere_and_keeps_a_correction(void)
 	enter_reversal(-1);
 	request(LW_MOTION_REQUEST_SWAP | LW_MOTION_REQUEST_CORRECTION, &other, 5);
 
-	const int32_t m = motion.law.m;
+	const int32_t m = lw_motion_m(&motion);
 
 	edges(1, 1);
 	TEST_ASSERT_EQUAL_PTR(&other, motion.window);
-	TEST_ASSERT_EQUAL_INT32(m + KS - KA, motion.law.m);
+	TEST_ASSERT_EQUAL_INT32(m + KS - KA, lw_motion_m(&motion));
 	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_CORRECTION, motion.requests);
 }
 
@@ -300,7 +325,7 @@ static void test_timer_edges_stop_at_rest_at_the_side_asked_for(void)
 		const uint8_t bit = side ? LW_MOTION_MINUS : LW_MOTION_PLUS;
 
 		setUp();
-		motion.source = LW_EDGE_SOURCE_TIMER;
+		lw_motion_set_source(&motion, LW_EDGE_SOURCE_TIMER);
 		motion.stop_at_rest = bit;
 		for (int i = 0; i < 200000 && motion.source == LW_EDGE_SOURCE_TIMER; i++) {
 			lw_motion_timer_edge(&motion);
@@ -308,7 +333,7 @@ static void test_timer_edges_stop_at_rest_at_the_side_asked_for(void)
 		TEST_ASSERT_EQUAL_UINT8(LW_EDGE_SOURCE_NONE, motion.source);
 		TEST_ASSERT_EQUAL_INT32(0, motion.law.u);
 		TEST_ASSERT_EQUAL_INT32(side ? -8000 - 247 : 8000 + 247,
-					lw_law_pos_usteps(motion.law.m));
+					lw_law_pos_usteps(lw_motion_m(&motion)));
 	}
 }
 
@@ -319,6 +344,112 @@ static void test_drum_edges_do_not_stop_at_rest(void)
 	TEST_ASSERT_EQUAL_UINT8(LW_EDGE_SOURCE_ENCODER, motion.source);
 }
 
+static void test_the_short_way_does_what_the_long_way_does(void)
+{
+	static const struct {
+		int32_t ka;
+		int32_t nr;
+		int32_t plus_usteps;
+		int32_t minus_usteps;
+	} sets[] = {{KA, NR, 300, -300},
+		    {65535, 1, 40, -20},
+		    {300, 200, 31000, 30900},
+		    {23, 1187, -30000, -30100},
+		    {4369, 15, 32000, -32000}}; /* the sweep is longer than half of 2^32 */
+	uint64_t seed = 5;
+
+	for (size_t i = 0; i < sizeof(sets) / sizeof(sets[0]); i++) {
+		const int32_t ks = sets[i].ka * sets[i].nr;
+		struct lw_motion long_way;
+
+		window = law_window(sets[i].ka, sets[i].nr, sets[i].plus_usteps,
+				    sets[i].minus_usteps);
+		/* Near a reversal: the longest sweep is more than a run. */
+		lw_motion_place(&motion, &window, window.sweep_end - 1, ks);
+		lw_motion_set_source(&motion, LW_EDGE_SOURCE_NONE);
+		lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
+		long_way = motion;
+		edges(1, 1);
+		(void)lw_motion_long_edge(&long_way, 1);
+		for (int run = 0; run < 200; run++) {
+			const int dd = next_random(&seed) % 8 ? 1 : -1;
+
+			for (uint32_t count = next_random(&seed) % 1024 + 1; count > 0; count--) {
+				TEST_ASSERT_EQUAL_UINT32(motion.law.span, motion.law.open_span);
+				TEST_ASSERT_EQUAL_INT(lw_motion_long_edge(&long_way, dd),
+						      lw_motion_edge(&motion, dd));
+				TEST_ASSERT_TRUE(law_same(&long_way.law, &motion.law));
+				TEST_ASSERT_TRUE(law_on_orbit(&motion.law, &window));
+			}
+		}
+		TEST_ASSERT_EQUAL_UINT32(long_way.steps, motion.steps);
+		TEST_ASSERT_EQUAL_INT32(long_way.last_step, motion.last_step);
+		TEST_ASSERT_EQUAL_INT32(long_way.law.turned, motion.law.turned);
+	}
+}
+
+/** Is the next edge one that looks at everything? And is the one after it again a short one? */
+static void check_closed_for_one_edge(void)
+{
+	TEST_ASSERT_EQUAL_UINT32(0, motion.law.open_span);
+	edges(1, 1);
+	TEST_ASSERT_EQUAL_UINT32(motion.law.span, motion.law.open_span);
+}
+
+static void test_whatever_is_asked_for_closes_the_short_way(void)
+{
+	check_closed_for_one_edge();
+	request(LW_MOTION_REQUEST_CORRECTION, NULL, 3);
+	check_closed_for_one_edge();
+	request(LW_MOTION_REQUEST_WINDOW, &other, 0);
+	check_closed_for_one_edge();
+	request(LW_MOTION_REQUEST_SWAP, &window, 0);
+	check_closed_for_one_edge();
+	request(LW_MOTION_REQUEST_REBASE, &other, 1);
+	check_closed_for_one_edge();
+	lw_motion_block(&motion, LW_MOTION_MINUS, true);
+	edges(1, 2);
+	TEST_ASSERT_EQUAL_UINT32(0, motion.law.open_span);
+	lw_motion_block(&motion, LW_MOTION_MINUS, false);
+	check_closed_for_one_edge();
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_NONE);
+	edges(1, 2);
+	TEST_ASSERT_EQUAL_UINT32(0, motion.law.open_span);
+	window.dwell_plus_edges = 1;
+	lw_motion_place(&motion, &window, 0, KS);
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
+	edges(1, 2);
+	TEST_ASSERT_EQUAL_UINT32(0, motion.law.open_span);
+}
+
+static void test_counters_go_on_beyond_32_bits(void)
+{
+	const uint32_t far = 1u << 30;
+	int64_t expected = 0;
+
+	edges(1, 10);
+	expected += 10;
+	for (int direction = 1; direction >= -1; direction -= 2) {
+		for (int i = 0; i < 10; i++) {
+			motion.edges += (uint32_t)direction * far;
+			expected += direction * (int64_t)far;
+			TEST_ASSERT_EQUAL_INT64(expected, lw_motion_read(&motion).net_edges);
+			lw_motion_count(&motion);
+			TEST_ASSERT_EQUAL_INT64(expected, lw_motion_read(&motion).net_edges);
+			TEST_ASSERT_EQUAL_INT64(expected, lw_motion_read(&motion).pattern_edges);
+		}
+		edges(direction, 7);
+		expected += 7 * direction;
+	}
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_NONE);
+	lw_motion_begin_pattern(&motion);
+	edges(1, 5);
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
+	edges(-1, 3);
+	TEST_ASSERT_EQUAL_INT64(expected + 2, lw_motion_read(&motion).net_edges);
+	TEST_ASSERT_EQUAL_INT64(-3, lw_motion_read(&motion).pattern_edges);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -326,7 +457,7 @@ int main(void)
 	RUN_TEST(test_the_odometer_counts_whatever_moves_the_carriage);
 	RUN_TEST(test_edges_of_another_source_do_not_move_it);
 	RUN_TEST(test_direction_follows_slope_and_drum);
-	RUN_TEST(test_reached_tells_the_side);
+	RUN_TEST(test_a_slope_change_tells_its_side_once);
 	RUN_TEST(test_steps_equal_the_change_of_position_less_corrections);
 	RUN_TEST(test_a_window_waits_for_the_sweep_of_both);
 	RUN_TEST(test_a_wider_window_waits_for_the_end_of_the_reversal);
@@ -338,5 +469,8 @@ int main(void)
 	RUN_TEST(test_a_blocked_side_gets_no_steps);
 	RUN_TEST(test_timer_edges_stop_at_rest_at_the_side_asked_for);
 	RUN_TEST(test_drum_edges_do_not_stop_at_rest);
+	RUN_TEST(test_the_short_way_does_what_the_long_way_does);
+	RUN_TEST(test_whatever_is_asked_for_closes_the_short_way);
+	RUN_TEST(test_counters_go_on_beyond_32_bits);
 	return UNITY_END();
 }

@@ -20,18 +20,20 @@ void tearDown(void)
 }
 
 /** Make a planned move; the slope stays within Ks and in its direction; one step per edge. */
-static void run(struct lw_law *law, const struct lw_law_window *window, int32_t ks, int direction)
+static struct lw_law run(const struct lw_law_window *window, int32_t m, int32_t ks, int direction)
 {
+	struct lw_law law = lw_law_at(window, m, 0);
 	uint32_t edges = 0;
 
 	do {
-		const int step = lw_law_edge(law, window, 1);
+		const int step = lw_law_edge(&law, 1);
 
 		TEST_ASSERT_TRUE(-1 <= step && step <= 1);
-		TEST_ASSERT_TRUE(direction * law->u >= 0);
-		TEST_ASSERT_TRUE(direction * law->u <= ks);
+		TEST_ASSERT_TRUE(direction * law.u >= 0);
+		TEST_ASSERT_TRUE(direction * law.u <= ks);
 		TEST_ASSERT_TRUE(edges++ < 400000000u);
-	} while (law->u != 0);
+	} while (law.u != 0);
+	return law;
 }
 
 static void check_move(size_t slope, int32_t from_q16, int32_t target_usteps)
@@ -39,17 +41,17 @@ static void check_move(size_t slope, int32_t from_q16, int32_t target_usteps)
 	const int32_t ka = slopes[slope].ka;
 	const int32_t ks = ka * slopes[slope].nr;
 	const int64_t way = (int64_t)target_usteps * LW_USTEP - from_q16;
-	struct lw_law law = {.m = from_q16};
 	struct lw_law_window window;
 	const bool far = way >= LW_USTEP || way <= -LW_USTEP;
 
-	TEST_ASSERT_EQUAL(far, lw_move_to(&law, &window, ka, slopes[slope].nr, target_usteps));
-	TEST_ASSERT_EQUAL_INT32(from_q16, law.m);
+	TEST_ASSERT_EQUAL(far, lw_move_to(from_q16, &window, ka, slopes[slope].nr, target_usteps));
 	if (far) {
-		run(&law, &window, ks, way > 0 ? 1 : -1);
-		TEST_ASSERT_TRUE(window.ks <= ks);
+		const struct lw_law law = run(&window, from_q16, ks, way > 0 ? 1 : -1);
 
-		const int64_t error = law.m - (int64_t)target_usteps * LW_USTEP;
+		TEST_ASSERT_TRUE(window.ks <= ks);
+		TEST_ASSERT_TRUE(window.sweep_begin < window.sweep_end);
+
+		const int64_t error = lw_law_m(&law) - (int64_t)target_usteps * LW_USTEP;
 
 		TEST_ASSERT_TRUE(-LW_USTEP < error && error < LW_USTEP);
 	}
@@ -95,13 +97,12 @@ static void test_less_than_a_microstep_away_is_there_already(void)
 
 static void test_a_short_way_is_done_at_a_lower_slope(void)
 {
-	const struct lw_law law = {0};
 	struct lw_law_window window;
 
-	TEST_ASSERT_TRUE(lw_move_to(&law, &window, 23, 1187, 10));
+	TEST_ASSERT_TRUE(lw_move_to(0, &window, 23, 1187, 10));
 	/* Two ramps over n edges cover Ka * n^2: n = 168. */
 	TEST_ASSERT_EQUAL_INT32(168 * 23, window.ks);
-	TEST_ASSERT_TRUE(lw_move_to(&law, &window, 23, 1187, 1000));
+	TEST_ASSERT_TRUE(lw_move_to(0, &window, 23, 1187, 1000));
 	TEST_ASSERT_EQUAL_INT32(1187 * 23, window.ks);
 }
 
@@ -112,18 +113,17 @@ static void test_an_endless_run_reaches_ks_at_zero_and_keeps_it(void)
 		const int32_t nr = slopes[slope].nr;
 
 		for (int direction = -1; direction <= 1; direction += 2) {
-			struct lw_law law;
 			struct lw_law_window window;
+			const int32_t m = lw_move_run(&window, ka, nr, direction);
+			struct lw_law law = lw_law_at(&window, m, 0);
 
-			lw_move_run(&law, &window, ka, nr, direction);
-			TEST_ASSERT_EQUAL_INT32(0, law.u);
 			for (int i = 0; i < nr; i++) {
-				lw_law_edge(&law, &window, 1);
+				lw_law_edge(&law, 1);
 			}
-			TEST_ASSERT_EQUAL_INT32(0, law.m);
+			TEST_ASSERT_EQUAL_INT32(0, lw_law_m(&law));
 			for (int i = 0; i < 1000; i++) {
 				TEST_ASSERT_EQUAL_INT32(direction * ka * nr, law.u);
-				lw_law_edge(&law, &window, 1);
+				lw_law_edge(&law, 1);
 			}
 		}
 	}
@@ -133,28 +133,30 @@ static void test_halting_from_any_point_of_a_move(void)
 {
 	for (int direction = -1; direction <= 1; direction += 2) {
 		const int32_t target_usteps = direction * 1200;
-		struct lw_law law = {0};
 		struct lw_law_window window;
 
-		TEST_ASSERT_TRUE(lw_move_to(&law, &window, 23, 1187, target_usteps));
+		TEST_ASSERT_TRUE(lw_move_to(0, &window, 23, 1187, target_usteps));
+
+		struct lw_law law = lw_law_at(&window, 0, 0);
+
 		for (;;) {
-			struct lw_law halting = law;
+			struct lw_law halting;
 			struct lw_law_window halt_window;
 
-			lw_law_edge(&law, &window, 1);
+			lw_law_edge(&law, 1);
 			if (law.u == 0) {
 				break;
 			}
-			halting = law;
-			lw_move_halt(&halting, &halt_window, 23);
+			lw_move_halt(law.u, &halt_window, 23);
+			halting = lw_law_at(&halt_window, lw_law_m(&law), law.u);
 			while (halting.u != 0) {
 				const int32_t before = halting.u;
 
-				lw_law_edge(&halting, &halt_window, 1);
+				lw_law_edge(&halting, 1);
 				TEST_ASSERT_EQUAL_INT32(before - direction * 23, halting.u);
 			}
 			/* Never farther than the move itself would have gone. */
-			TEST_ASSERT_TRUE(direction * (halting.m >> 16) <=
+			TEST_ASSERT_TRUE(direction * lw_law_pos_usteps(lw_law_m(&halting)) <=
 					 direction * target_usteps + 1);
 		}
 	}

@@ -46,14 +46,14 @@ static void both_edges(int dd, int32_t count)
 {
 	while (count-- > 0) {
 		paper_edge(dd);
-		lw_law_edge(&law, &window, dd);
+		lw_law_edge(&law, dd);
 	}
 }
 
 void setUp(void)
 {
 	window = law_window(KA, NR, PLUS, MINUS);
-	law = (struct lw_law){.m = 0, .u = KS};
+	law = lw_law_at(&window, 0, KS);
 	paper = (struct paper){.m = 0, .velocity = KS, .dd_before = 1};
 }
 
@@ -70,9 +70,9 @@ static void test_paper_row_drum_backward_runs_away(void)
 	TEST_ASSERT_EQUAL_INT64(321, paper_speed() / KS);
 
 	for (int i = 0; i < 400000; i++) {
-		lw_law_edge(&law, &window, 1);
+		lw_law_edge(&law, 1);
 	}
-	TEST_ASSERT_EQUAL_INT32(0, law.m);
+	TEST_ASSERT_EQUAL_INT32(0, lw_law_m(&law));
 	TEST_ASSERT_EQUAL_INT32(KS, law.u);
 }
 
@@ -81,7 +81,7 @@ static void test_paper_row_direction_change_inside_a_reversal(void)
 	int64_t paper_farthest = 0;
 	int32_t farthest = 0;
 
-	while (lw_law_region(&window, law.m) == 0) {
+	while (lw_law_region(&window, lw_law_m(&law)) == 0) {
 		both_edges(1, 1);
 	}
 	both_edges(1, NR / 2);
@@ -93,7 +93,7 @@ static void test_paper_row_direction_change_inside_a_reversal(void)
 	while (law.u != -KS) {
 		both_edges(1, 1);
 		paper_farthest = paper.m > paper_farthest ? paper.m : paper_farthest;
-		farthest = law.m > farthest ? law.m : farthest;
+		farthest = lw_law_m(&law) > farthest ? lw_law_m(&law) : farthest;
 	}
 	TEST_ASSERT_EQUAL_INT32(PLUS + 247, lw_law_pos_usteps(farthest));
 	TEST_ASSERT_NOT_EQUAL(lw_law_pos_usteps(farthest), paper_farthest >> 16);
@@ -139,38 +139,38 @@ static void test_paper_row_a_reversal_takes_two_nr_edges(void)
 {
 	int edges = 0;
 
-	while (lw_law_region(&window, law.m) == 0) {
-		lw_law_edge(&law, &window, 1);
+	while (lw_law_region(&window, lw_law_m(&law)) == 0) {
+		lw_law_edge(&law, 1);
 	}
 	while (law.u != -KS) {
-		lw_law_edge(&law, &window, 1);
+		lw_law_edge(&law, 1);
 		edges++;
 	}
 	TEST_ASSERT_EQUAL_INT(2 * NR, edges);
-	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&window, law.m));
+	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&window, lw_law_m(&law)));
 }
 
 static void test_paper_row_indexing_ramp(void)
 {
 	/* The paper's way, L- = Nr, taken as microsteps, from rest at 0. */
 	window = law_window(KA, NR, 30000, NR);
-	law = (struct lw_law){0};
-	while (lw_law_region(&window, law.m) != 0) {
-		lw_law_edge(&law, &window, 1);
+	law = lw_law_at(&window, 0, 0);
+	while (lw_law_region(&window, lw_law_m(&law)) != 0) {
+		lw_law_edge(&law, 1);
 	}
 	TEST_ASSERT_EQUAL_INT32(219, 100 * (int64_t)law.u / KS);
 
 	for (int direction = -1; direction <= 1; direction += 2) {
-		lw_move_run(&law, &window, KA, NR, direction);
+		law = lw_law_at(&window, lw_move_run(&window, KA, NR, direction), 0);
 		TEST_ASSERT_EQUAL_INT32(0, law.u);
 		for (int i = 0; i < NR; i++) {
 			TEST_ASSERT_EQUAL_INT32(direction * i * KA, law.u);
-			lw_law_edge(&law, &window, 1);
+			lw_law_edge(&law, 1);
 		}
-		TEST_ASSERT_EQUAL_INT32(0, law.m);
+		TEST_ASSERT_EQUAL_INT32(0, lw_law_m(&law));
 		for (int i = 0; i < 40000; i++) {
 			TEST_ASSERT_EQUAL_INT32(direction * KS, law.u);
-			lw_law_edge(&law, &window, 1);
+			lw_law_edge(&law, 1);
 		}
 	}
 }
@@ -181,28 +181,28 @@ static void test_paper_row_parking_place(void)
 
 	/* The last reversal begins one overshoot before the place; it ends in rest there. */
 	window.sweep_end = (int32_t)(park_usteps * LW_USTEP - lw_move_overshoot_q16(KA, NR));
-	law.m = -7000 * LW_USTEP;
+	law = lw_law_at(&window, -7000 * LW_USTEP, law.u);
 	do {
-		lw_law_edge(&law, &window, 1);
+		lw_law_edge(&law, 1);
 	} while (law.u != 0);
-	TEST_ASSERT_TRUE(law.m >= park_usteps * LW_USTEP);
-	TEST_ASSERT_TRUE(law.m < park_usteps * LW_USTEP + KS);
+	TEST_ASSERT_TRUE(lw_law_m(&law) >= park_usteps * LW_USTEP);
+	TEST_ASSERT_TRUE(lw_law_m(&law) < park_usteps * LW_USTEP + KS);
 
 	/* The paper's L- = pos_init + Nr: far from it. */
 	window = law_window(KA, NR, PLUS, park_usteps + NR);
-	law = (struct lw_law){.m = 7000 * LW_USTEP, .u = -KS};
+	law = lw_law_at(&window, 7000 * LW_USTEP, -KS);
 	do {
-		lw_law_edge(&law, &window, 1);
+		lw_law_edge(&law, 1);
 	} while (law.u != 0);
-	TEST_ASSERT_INT32_WITHIN(2, NR - 247, lw_law_pos_usteps(law.m) - park_usteps);
+	TEST_ASSERT_INT32_WITHIN(2, NR - 247, lw_law_pos_usteps(lw_law_m(&law)) - park_usteps);
 }
 
 static void test_paper_row_without_a_hand_over_the_carriage_never_moves_again(void)
 {
 	/* That hand-over sets the slope: test_controller.c. */
-	law = (struct lw_law){.m = 100 * LW_USTEP};
+	law = lw_law_at(&window, 100 * LW_USTEP, 0);
 	for (int i = 0; i < 100000; i++) {
-		TEST_ASSERT_EQUAL_INT(0, lw_law_edge(&law, &window, 1));
+		TEST_ASSERT_EQUAL_INT(0, lw_law_edge(&law, 1));
 	}
 }
 
@@ -225,32 +225,32 @@ static void test_paper_row_reindex_inside_a_reversal(void)
 	struct lw_motion motion;
 
 	/* Overwriting m in a reversal strands a slope that is not Ks in the sweep, for ever. */
-	law = (struct lw_law){.m = PLUS * LW_USTEP, .u = KS};
+	law = lw_law_at(&window, PLUS * LW_USTEP, KS);
 	for (int i = 0; i < NR / 2; i++) {
-		lw_law_edge(&law, &window, 1);
+		lw_law_edge(&law, 1);
 	}
-	law.m -= 300 * LW_USTEP;
-	while (lw_law_region(&window, law.m) == 0 && law.u > 0) {
+	law.rel -= 300u * LW_USTEP;
+	while (lw_law_region(&window, lw_law_m(&law)) == 0 && law.u > 0) {
 		TEST_ASSERT_NOT_EQUAL(KS, law.u);
-		lw_law_edge(&law, &window, 1);
+		lw_law_edge(&law, 1);
 	}
 
 	/* Held, and applied on the edge that leaves the reversal. */
 	lw_motion_init(&motion, &window);
-	motion.source = LW_EDGE_SOURCE_ENCODER;
-	motion.law = (struct lw_law){.m = PLUS * LW_USTEP, .u = KS};
+	lw_motion_place(&motion, &window, PLUS * LW_USTEP, KS);
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
 	law = motion.law;
 	motion.request_correction_usteps = -300;
-	motion.requests = LW_MOTION_REQUEST_CORRECTION;
+	lw_motion_request(&motion, LW_MOTION_REQUEST_CORRECTION);
 	for (int i = 1; i < 2 * NR; i++) {
 		lw_motion_encoder_edge(&motion, 1);
-		lw_law_edge(&law, &window, 1);
+		lw_law_edge(&law, 1);
 		TEST_ASSERT_TRUE(law_same(&law, &motion.law));
 	}
 	lw_motion_encoder_edge(&motion, 1);
-	lw_law_edge(&law, &window, 1);
+	lw_law_edge(&law, 1);
 	TEST_ASSERT_EQUAL_INT32(-KS, motion.law.u);
-	TEST_ASSERT_EQUAL_INT32(law.m - 300 * LW_USTEP, motion.law.m);
+	TEST_ASSERT_EQUAL_INT32(lw_law_m(&law) - 300 * LW_USTEP, lw_motion_m(&motion));
 	TEST_ASSERT_EQUAL_UINT8(0, motion.requests);
 }
 

@@ -499,20 +499,18 @@ static void check_accepted(uint64_t *seed)
 
 	/* P8: the sanitizers watch both reversals. */
 	for (int side = -1; side <= 1; side += 2) {
-		law = (struct lw_law){
-			.m = side > 0 ? window.sweep_end - 1 : window.sweep_begin,
-			.u = side * derived.ks,
-		};
+		law = lw_law_at(&window, side > 0 ? window.sweep_end - 1 : window.sweep_begin,
+				side * derived.ks);
 		for (int i = 0; i < 50; i++) {
-			lw_law_edge(&law, &window, next_random(seed) % 5 ? 1 : -1);
+			lw_law_edge(&law, next_random(seed) % 5 ? 1 : -1);
 			TEST_ASSERT_TRUE(law_on_orbit(&law, &window));
 		}
-		law = (struct lw_law){
-			.m = side > 0 ? window.sweep_end + derived.overshoot_q16 + derived.ks - 1
-				      : window.sweep_begin - derived.overshoot_q16 - derived.ks,
-		};
+		law = lw_law_at(&window,
+				side > 0 ? window.sweep_end + derived.overshoot_q16 + derived.ks - 1
+					 : window.sweep_begin - derived.overshoot_q16 - derived.ks,
+				0);
 		TEST_ASSERT_TRUE(law_on_orbit(&law, &window));
-		lw_law_edge(&law, &window, 1);
+		lw_law_edge(&law, 1);
 	}
 }
 

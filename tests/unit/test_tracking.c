@@ -320,7 +320,8 @@ static void test_trim_waits_for_the_end_of_a_reversal(void)
 	go_to_the_middle(LW_PLUS, 1);
 	rig_follow_to(8100, 1, SPEED);
 	lw_controller_set_trim(rig.controller, 400, 0);
-	while (lw_law_region(rig.controller->motion.window, rig.controller->motion.law.m) != 0) {
+	while (lw_law_region(rig.controller->motion.window, lw_motion_m(&rig.controller->motion)) !=
+	       0) {
 		TEST_ASSERT_EQUAL_INT32(8000, sweep_end_usteps());
 		rig_tick();
 	}

@@ -5,11 +5,6 @@
 
 #include "controller_internal.h"
 
-static uint8_t side_bit(int side)
-{
-	return side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS;
-}
-
 static int busy(struct lw_refusal *why, enum lw_reason reason)
 {
 	why->reason = (uint16_t)reason;
@@ -20,7 +15,7 @@ void lw_controller_cut(struct lw_controller *controller)
 {
 	struct lw_motion *motion = &controller->motion;
 
-	motion->source = LW_EDGE_SOURCE_NONE;
+	lw_motion_set_source(motion, LW_EDGE_SOURCE_NONE);
 	motion->requests = 0;
 	motion->request_correction_usteps = 0;
 	motion->stop_at_rest = 0;
@@ -64,7 +59,7 @@ void lw_controller_request(struct lw_controller *controller, struct lw_law_windo
 		motion->requests = 0;
 		motion->request_correction_usteps = correction_usteps;
 	}
-	motion->requests |= (uint8_t)request;
+	lw_motion_request(motion, (uint8_t)request);
 }
 
 bool lw_controller_moves_toward(int direction, int side)
@@ -134,7 +129,8 @@ void lw_controller_configure(struct lw_controller *controller, const struct lw_p
 	controller->trim_minus_um = 0;
 	lw_controller_cut(controller);
 	controller->windows[0] = lw_controller_track_window(controller);
-	controller->motion.window = &controller->windows[0];
+	lw_motion_place(&controller->motion, &controller->windows[0],
+			lw_motion_m(&controller->motion), controller->motion.law.u);
 	controller->indexed = false;
 	controller->on_orbit = false;
 	if (controller->state == LW_STATE_READY || controller->state == LW_STATE_CENTRED) {
@@ -165,7 +161,7 @@ void lw_controller_limit(struct lw_controller *controller, int side, bool no_clo
 			 uint64_t now_us)
 {
 	const struct lw_limit_switch_trigger at = {
-		.pos_usteps = lw_law_pos_usteps(controller->motion.law.m),
+		.pos_usteps = lw_law_pos_usteps(lw_motion_m(&controller->motion)),
 		.direction = (int8_t)lw_motion_direction(&controller->motion),
 	};
 
@@ -176,11 +172,8 @@ void lw_controller_limit(struct lw_controller *controller, int side, bool no_clo
 void lw_controller_overtravel(struct lw_controller *controller, int side, bool actuated)
 {
 	controller->overtravel[side] = actuated;
-	if (actuated) {
-		controller->motion.blocked |= side_bit(side);
-	} else {
-		controller->motion.blocked &= (uint8_t)~side_bit(side);
-	}
+	lw_motion_block(&controller->motion, side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS,
+			actuated);
 }
 
 bool lw_controller_moving(const struct lw_controller *controller)
@@ -379,6 +372,7 @@ void lw_controller_jog(struct lw_controller *controller, int direction, uint64_t
 		return;
 	}
 
+	int32_t m = lw_motion_m(&controller->motion);
 	int32_t target_usteps = direction * controller->derived->travel_usteps;
 	enum lw_state rest_state = controller->fault ? LW_STATE_FAULT : LW_STATE_UNINDEXED;
 
@@ -389,18 +383,18 @@ void lw_controller_jog(struct lw_controller *controller, int direction, uint64_t
 		target_usteps = direction > 0 ? lw_law_pos_usteps(window.sweep_end) - 2
 					      : lw_law_pos_usteps(window.sweep_begin) + 2;
 		rest_state = LW_STATE_READY;
-		if (direction * (target_usteps - lw_law_pos_usteps(controller->motion.law.m)) <=
-		    0) {
+		if (direction * (target_usteps - lw_law_pos_usteps(m)) <= 0) {
 			return; /* at the limit already */
 		}
 		if (controller->state == LW_STATE_TRACKING) {
 			lw_tracking_leave(controller);
+			m = lw_motion_m(&controller->motion);
 		}
 	} else {
-		controller->motion.law = (struct lw_law){0};
+		m = 0;
 	}
 	controller->move_direction = (int8_t)direction;
-	lw_homing_move_to(controller, target_usteps, LW_STATE_JOGGING, rest_state);
+	lw_homing_move_to(controller, m, target_usteps, LW_STATE_JOGGING, rest_state);
 }
 
 void lw_controller_set_trim(struct lw_controller *controller, int32_t trim_plus_um,
@@ -417,7 +411,7 @@ void lw_controller_set_trim(struct lw_controller *controller, int32_t trim_plus_
 /** Measure the drum speed over the last LW_CONTROLLER_SPEED_TICKS ticks, and whether it rests. */
 static void measure_speed(struct lw_controller *controller, uint64_t now_us)
 {
-	const int64_t edges = lw_motion_read(&controller->motion).net_edges;
+	const int64_t edges = controller->motion.net_edges;
 	int64_t *oldest = &controller->edge_history[controller->edge_history_next];
 	uint32_t *oldest_us = &controller->edge_history_us[controller->edge_history_next];
 	const uint32_t duration_us = (uint32_t)now_us - *oldest_us;
@@ -470,13 +464,14 @@ static void check_speed(struct lw_controller *controller)
 static void hand_over(struct lw_controller *controller)
 {
 	const struct lw_law_window window = lw_controller_track_window(controller);
-	const int region = lw_law_region(&window, controller->motion.law.m);
+	const int32_t m = lw_motion_m(&controller->motion);
+	const int region = lw_law_region(&window, m);
 
 	if (controller->on_orbit || region == 0) {
 		lw_tracking_start(controller);
 	} else {
 		/* The sweep's slope in a reversal would stay wrong for ever: go inside first. */
-		lw_homing_move_to(controller,
+		lw_homing_move_to(controller, m,
 				  region < 0 ? lw_law_pos_usteps(window.sweep_end) - 2
 					     : lw_law_pos_usteps(window.sweep_begin) + 2,
 				  LW_STATE_CENTRING, LW_STATE_READY);
@@ -519,7 +514,8 @@ static void serve_mode(struct lw_controller *controller)
 		if (controller->state == LW_STATE_TRACKING) {
 			lw_tracking_leave(controller);
 		}
-		lw_homing_move_to(controller, controller->derived->centre_usteps, LW_STATE_CENTRING,
+		lw_homing_move_to(controller, lw_motion_m(&controller->motion),
+				  controller->derived->centre_usteps, LW_STATE_CENTRING,
 				  LW_STATE_CENTRED);
 	}
 }
@@ -537,6 +533,7 @@ void lw_controller_tick(struct lw_controller *controller, uint64_t now_us)
 		triggers[side].taken = lw_limit_switch_take(limit, &triggers[side].at);
 	}
 
+	lw_motion_count(&controller->motion);
 	measure_speed(controller, now_us);
 	check_overtravel(controller);
 	check_speed(controller);

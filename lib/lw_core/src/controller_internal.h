@@ -36,8 +36,8 @@ bool lw_controller_moves_toward(int direction, int side);
 /* homing.c */
 void lw_homing_start(struct lw_controller *controller);
 void lw_homing_tick(struct lw_controller *controller, const struct lw_controller_trigger *triggers);
-/** Move the resting carriage; on arrival enter `rest_state`. */
-void lw_homing_move_to(struct lw_controller *controller, int32_t target_usteps,
+/** Move the resting carriage, which is at m (Q16.16); on arrival enter `rest_state`. */
+void lw_homing_move_to(struct lw_controller *controller, int32_t m, int32_t target_usteps,
 		       enum lw_state moving_state, enum lw_state rest_state);
 /** Ramp down; a carriage whose place is known stops inside the sweep. */
 void lw_homing_halt(struct lw_controller *controller, enum lw_state rest_state);

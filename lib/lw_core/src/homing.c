@@ -10,41 +10,40 @@ static int32_t ramp_usteps(const struct lw_controller *controller)
 
 static int32_t pos_usteps(const struct lw_controller *controller)
 {
-	return lw_law_pos_usteps(controller->motion.law.m);
+	return lw_law_pos_usteps(lw_motion_m(&controller->motion));
 }
 
-/** Put the resting carriage's next window in force and start the edge timer. */
-static void start_timer(struct lw_controller *controller, struct lw_law_window window,
-			uint8_t stop_at_rest)
+/** Begin at rest at m (Q16.16), in a window, and start the edge timer. */
+static void start_timer(struct lw_controller *controller, struct lw_law_window window, int32_t m)
 {
 	struct lw_motion *motion = &controller->motion;
 
-	*lw_controller_spare_window(controller) = window;
-	motion->window = lw_controller_spare_window(controller);
+	struct lw_law_window *spare = lw_controller_spare_window(controller);
+
+	*spare = window;
+	lw_motion_place(motion, spare, m, 0);
 	motion->requests = 0;
-	motion->stop_at_rest = stop_at_rest;
-	motion->last_dd = 1;
+	motion->stop_at_rest = LW_MOTION_PLUS | LW_MOTION_MINUS;
 	controller->halting = false;
 	controller->halt_sent = false;
 	controller->on_orbit = false;
-	motion->source = LW_EDGE_SOURCE_TIMER;
+	lw_motion_set_source(motion, LW_EDGE_SOURCE_TIMER);
 }
 
-void lw_homing_move_to(struct lw_controller *controller, int32_t target_usteps,
+void lw_homing_move_to(struct lw_controller *controller, int32_t m, int32_t target_usteps,
 		       enum lw_state moving_state, enum lw_state rest_state)
 {
 	struct lw_law_window window;
 
-	/* Whatever the pattern was doing, the carriage is at rest now. */
-	controller->motion.law.u = 0;
-	controller->motion.law.dwell_edges = 0;
 	controller->on_orbit = false;
 	controller->rest_state = rest_state;
-	if (lw_move_to(&controller->motion.law, &window, controller->derived->ka,
-		       controller->derived->nr, target_usteps)) {
+	if (lw_move_to(m, &window, controller->derived->ka, controller->derived->nr,
+		       target_usteps)) {
 		controller->state = moving_state;
-		start_timer(controller, window, LW_MOTION_PLUS | LW_MOTION_MINUS);
+		start_timer(controller, window, m);
 	} else {
+		/* Whatever the pattern was doing, the carriage is at rest now. */
+		lw_motion_place(&controller->motion, controller->motion.window, m, 0);
 		controller->state = rest_state;
 	}
 }
@@ -58,21 +57,20 @@ void lw_homing_halt(struct lw_controller *controller, enum lw_state rest_state)
 static void start_seeking(struct lw_controller *controller)
 {
 	struct lw_law_window window;
+	const int32_t m = lw_move_run(&window, controller->derived->ka, controller->derived->nr,
+				      lw_side_direction((int)controller->params->index_switch));
 
-	lw_move_run(&controller->motion.law, &window, controller->derived->ka,
-		    controller->derived->nr,
-		    lw_side_direction((int)controller->params->index_switch));
 	controller->state = LW_STATE_SEEKING;
-	start_timer(controller, window, LW_MOTION_PLUS | LW_MOTION_MINUS);
+	start_timer(controller, window, m);
 }
 
 static void start_backing_off(struct lw_controller *controller, int side)
 {
 	controller->back_off_side = side;
 	controller->releasing = false;
-	controller->motion.law = (struct lw_law){0};
 	/* Farther than may be needed; cut short where the switch releases. */
-	lw_homing_move_to(controller, -lw_side_direction(side) * controller->derived->travel_usteps,
+	lw_homing_move_to(controller, 0,
+			  -lw_side_direction(side) * controller->derived->travel_usteps,
 			  LW_STATE_BACKING_OFF, LW_STATE_SEEKING);
 }
 
@@ -250,24 +248,24 @@ static void serve_halt(struct lw_controller *controller)
 	struct lw_motion *motion = &controller->motion;
 
 	if (!controller->halting || controller->halt_sent ||
-	    (controller->indexed && lw_law_region(&track, motion->law.m) != 0)) {
+	    (controller->indexed && lw_law_region(&track, lw_motion_m(motion)) != 0)) {
 		return;
 	}
 
 	/* Without edges for a moment: the ramp down must fit the slope that it begins with. */
-	motion->source = LW_EDGE_SOURCE_NONE;
+	lw_motion_set_source(motion, LW_EDGE_SOURCE_NONE);
 	if (motion->law.u == 0) {
 		return; /* before its first edge, or in a dwell: at rest already */
 	}
 
 	struct lw_law_window *window = lw_controller_spare_window(controller);
 
-	lw_move_halt(&motion->law, window, controller->derived->ka);
-	motion->window = window;
+	lw_move_halt(motion->law.u, window, controller->derived->ka);
+	lw_motion_place(motion, window, lw_motion_m(motion), motion->law.u);
 	motion->requests = 0;
 	motion->stop_at_rest = LW_MOTION_PLUS | LW_MOTION_MINUS;
 	controller->halt_sent = true;
-	motion->source = LW_EDGE_SOURCE_TIMER;
+	lw_motion_set_source(motion, LW_EDGE_SOURCE_TIMER);
 }
 
 void lw_homing_tick(struct lw_controller *controller, const struct lw_controller_trigger *triggers)

@@ -1,34 +1,148 @@
 #include "lw/motion.h"
 
 #include <stddef.h>
+#include <string.h>
 
 void lw_motion_init(struct lw_motion *motion, const struct lw_law_window *window)
 {
 	*motion = (struct lw_motion){
+		.law = lw_law_at(window, 0, 0),
 		.window = window,
-		.last_dd = 1,
 		.source = LW_EDGE_SOURCE_NONE,
 	};
 }
 
-struct lw_motion_reading lw_motion_read(const struct lw_motion *motion)
+int32_t lw_motion_m(const struct lw_motion *motion)
 {
-	const volatile uint32_t *interrupts = &motion->interrupts;
-	struct lw_motion_reading reading;
-	uint32_t before;
+	/* A new window changes both; the supervisor cannot ask for two while this reads. */
+	const volatile uint32_t *below_from = &motion->law.below_from;
+	const volatile uint32_t *rel = &motion->law.rel;
+	struct lw_law law;
 
 	do {
-		before = *interrupts;
-		atomic_signal_fence(memory_order_seq_cst);
-		reading = (struct lw_motion_reading){
-			.law = motion->law,
-			.net_edges = motion->net_edges,
-			.pattern_edges = motion->pattern_edges,
-			.steps = motion->steps,
-		};
-		atomic_signal_fence(memory_order_seq_cst);
-	} while (before != *interrupts);
-	return reading;
+		law.below_from = *below_from;
+		law.rel = *rel;
+	} while (law.below_from != *below_from);
+	return lw_law_m(&law);
+}
+
+/** The words that edges change. */
+struct words {
+	uint32_t rel;
+	uint32_t below_from;
+	uint32_t u;
+	uint32_t edges;
+	uint32_t unfollowed_edges;
+	uint32_t steps;
+};
+
+static struct words read_words(const volatile struct lw_motion *motion)
+{
+	return (struct words){
+		.rel = motion->law.rel,
+		.below_from = motion->law.below_from,
+		.u = (uint32_t)motion->law.u,
+		.edges = motion->edges,
+		.unfollowed_edges = motion->unfollowed_edges,
+		.steps = motion->steps,
+	};
+}
+
+static struct words read_twice(const struct lw_motion *motion)
+{
+	struct words first;
+	struct words second = read_words(motion);
+
+	do {
+		first = second;
+		second = read_words(motion);
+	} while (memcmp(&first, &second, sizeof(first)) != 0);
+	return second;
+}
+
+/** A 64-bit counter brought up to date with its lower half. */
+static int64_t continued(int64_t count, uint32_t low)
+{
+	return count + (int32_t)(low - (uint32_t)count);
+}
+
+struct lw_motion_reading lw_motion_read(const struct lw_motion *motion)
+{
+	const struct words words = read_twice(motion);
+	const struct lw_law law = {.rel = words.rel, .below_from = words.below_from};
+	const uint32_t followed_edges = words.edges - words.unfollowed_edges;
+
+	return (struct lw_motion_reading){
+		.m = lw_law_m(&law),
+		.u = (int32_t)words.u,
+		.net_edges = continued(motion->net_edges, words.edges),
+		.pattern_edges =
+			continued(motion->followed_edges, followed_edges) - motion->pattern_begin,
+		.steps = words.steps,
+	};
+}
+
+void lw_motion_count(struct lw_motion *motion)
+{
+	const struct words words = read_twice(motion);
+
+	motion->net_edges = continued(motion->net_edges, words.edges);
+	motion->followed_edges =
+		continued(motion->followed_edges, words.edges - words.unfollowed_edges);
+}
+
+void lw_motion_begin_pattern(struct lw_motion *motion)
+{
+	lw_motion_count(motion);
+	motion->pattern_begin = motion->followed_edges;
+}
+
+/** Let every edge go the long way, after what was written before. */
+static void close_short_way(struct lw_motion *motion)
+{
+	atomic_signal_fence(memory_order_seq_cst);
+	*(volatile uint32_t *)&motion->law.open_span = 0;
+	atomic_signal_fence(memory_order_seq_cst);
+}
+
+void lw_motion_set_source(struct lw_motion *motion, enum lw_edge_source source)
+{
+	motion->source = (uint8_t)source;
+	close_short_way(motion);
+}
+
+void lw_motion_place(struct lw_motion *motion, const struct lw_law_window *window, int32_t m,
+		     int32_t u)
+{
+	motion->window = window;
+	motion->law = lw_law_at(window, m, u);
+}
+
+void lw_motion_request(struct lw_motion *motion, uint8_t requests)
+{
+	motion->requests |= requests;
+	close_short_way(motion);
+}
+
+void lw_motion_block(struct lw_motion *motion, enum lw_motion_side_bit side, bool blocked)
+{
+	if (blocked) {
+		motion->blocked |= (uint8_t)side;
+	} else {
+		motion->blocked &= (uint8_t)~side;
+	}
+	close_short_way(motion);
+}
+
+bool lw_motion_take_turned(struct lw_motion *motion, enum lw_motion_side_bit side)
+{
+	volatile int32_t *turned = &motion->law.turned;
+
+	if (side == LW_MOTION_PLUS ? *turned >= 0 : *turned <= 0) {
+		return false;
+	}
+	*turned = 0;
+	return true;
 }
 
 /**
@@ -40,8 +154,8 @@ struct lw_motion_reading lw_motion_read(const struct lw_motion *motion)
  */
 static void correct(struct lw_motion *motion)
 {
-	const int32_t up_max = (motion->window->sweep_end - 1 - motion->law.m) / LW_USTEP;
-	const int32_t down_max = (motion->law.m - motion->window->sweep_begin) / LW_USTEP;
+	const int32_t up_max = (int32_t)((motion->law.span - 1 - motion->law.rel) / LW_USTEP);
+	const int32_t down_max = (int32_t)(motion->law.rel / LW_USTEP);
 	int32_t correction = motion->request_correction_usteps;
 
 	if (correction > up_max) {
@@ -50,18 +164,25 @@ static void correct(struct lw_motion *motion)
 	if (correction < -down_max) {
 		correction = -down_max;
 	}
-	motion->law.m += correction * LW_USTEP;
+	motion->law.rel += (uint32_t)correction * LW_USTEP;
 	motion->request_correction_usteps -= correction;
 	if (motion->request_correction_usteps == 0) {
 		motion->requests &= (uint8_t)~LW_MOTION_REQUEST_CORRECTION;
 	}
 }
 
+static void use(struct lw_motion *motion, const struct lw_law_window *window)
+{
+	motion->window = window;
+	lw_law_use(&motion->law, window);
+}
+
 /** Take a new window at once; what lies outside of its sweep is brought to the sweep's border. */
 static void rebase(struct lw_motion *motion)
 {
 	const struct lw_law_window *window = motion->request_window;
-	int64_t m = motion->law.m + (int64_t)motion->request_correction_usteps * LW_USTEP;
+	const int32_t before = lw_law_m(&motion->law);
+	const int64_t m = before + (int64_t)motion->request_correction_usteps * LW_USTEP;
 	int32_t rest_usteps = 0;
 
 	/* The rest is whole microsteps, rounded outward, so that m lands inside. */
@@ -70,8 +191,8 @@ static void rebase(struct lw_motion *motion)
 	} else if (m < window->sweep_begin) {
 		rest_usteps = -(int32_t)((window->sweep_begin - m + LW_USTEP - 1) / LW_USTEP);
 	}
-	motion->law.m = (int32_t)(m - (int64_t)rest_usteps * LW_USTEP);
-	motion->window = window;
+	motion->law.rel += (uint32_t)(m - (int64_t)rest_usteps * LW_USTEP - before);
+	use(motion, window);
 	motion->request_correction_usteps = rest_usteps;
 	motion->requests = rest_usteps ? LW_MOTION_REQUEST_CORRECTION : 0;
 }
@@ -83,41 +204,31 @@ static void serve_requests(struct lw_motion *motion)
 		return;
 	}
 	if (motion->requests & LW_MOTION_REQUEST_SWAP) {
-		motion->window = motion->request_window;
+		use(motion, motion->request_window);
 		motion->requests &= (uint8_t)~LW_MOTION_REQUEST_SWAP;
 		return;
 	}
-	if (!lw_motion_in_sweep(motion)) {
+	if (motion->law.rel >= motion->law.span) {
 		return;
 	}
 	if (motion->requests & LW_MOTION_REQUEST_CORRECTION) {
 		correct(motion);
 	}
 	if ((motion->requests & LW_MOTION_REQUEST_WINDOW) &&
-	    lw_law_region(motion->request_window, motion->law.m) == 0) {
-		motion->window = motion->request_window;
+	    lw_law_region(motion->request_window, lw_law_m(&motion->law)) == 0) {
+		use(motion, motion->request_window);
 		motion->requests &= (uint8_t)~LW_MOTION_REQUEST_WINDOW;
 	}
 }
 
-/** The side bit of the reversal that the carriage is in, 0 in the sweep. */
-static uint8_t reversal_side(const struct lw_motion *motion)
-{
-	const int region = lw_law_region(motion->window, motion->law.m);
-
-	return region == 0 ? 0 : region < 0 ? LW_MOTION_PLUS : LW_MOTION_MINUS;
-}
-
 static int take_edge(struct lw_motion *motion, int dd)
 {
-	const int step = lw_law_edge(&motion->law, motion->window, dd);
-	uint8_t side;
+	const int32_t before_usteps = lw_law_pos_usteps(lw_law_m(&motion->law));
+	int step;
 
-	motion->last_dd = (int8_t)dd;
-	side = reversal_side(motion);
-	if (side != 0) {
-		motion->reached |= side;
-	}
+	/* The window of a move need not begin at a whole microstep, as the law's step wants it. */
+	(void)lw_law_edge(&motion->law, dd);
+	step = (int)(lw_law_pos_usteps(lw_law_m(&motion->law)) - before_usteps);
 	if (motion->requests) {
 		serve_requests(motion);
 	}
@@ -125,18 +236,34 @@ static int take_edge(struct lw_motion *motion, int dd)
 		return 0;
 	}
 	motion->steps++;
+	motion->last_step = step;
 	return step;
 }
 
-int lw_motion_encoder_edge(struct lw_motion *motion, int dd)
+int lw_motion_long_edge(struct lw_motion *motion, int dd)
 {
-	motion->interrupts++;
-	motion->net_edges += dd;
+	struct lw_law *law = &motion->law;
+	int step;
+
 	if (motion->source != LW_EDGE_SOURCE_ENCODER) {
+		motion->unfollowed_edges += (uint32_t)dd;
 		return 0;
 	}
-	motion->pattern_edges += dd;
-	return take_edge(motion, dd);
+	step = take_edge(motion, dd);
+	if (!motion->requests && !motion->blocked && !law->dwell_plus_edges &&
+	    !law->dwell_minus_edges) {
+		law->open_span = law->span;
+	}
+	return step;
+}
+
+/** Is the carriage in a reversal in which timer edges shall stop? */
+static bool stops_here(const struct lw_motion *motion)
+{
+	const int region = lw_law_region(motion->window, lw_law_m(&motion->law));
+
+	return (region < 0 && (motion->stop_at_rest & LW_MOTION_PLUS)) ||
+	       (region > 0 && (motion->stop_at_rest & LW_MOTION_MINUS));
 }
 
 int lw_motion_timer_edge(struct lw_motion *motion)
@@ -145,11 +272,9 @@ int lw_motion_timer_edge(struct lw_motion *motion)
 		return 0;
 	}
 
-	motion->interrupts++;
-
 	const int step = take_edge(motion, 1);
 
-	if (motion->law.u == 0 && (motion->stop_at_rest & reversal_side(motion))) {
+	if (motion->law.u == 0 && stops_here(motion)) {
 		motion->source = LW_EDGE_SOURCE_NONE;
 	}
 	return step;

@@ -4,7 +4,7 @@
 static bool surely_inward(const struct lw_controller *controller, int side)
 {
 	const struct lw_derived *derived = controller->derived;
-	const int32_t pos_usteps = lw_law_pos_usteps(controller->motion.law.m);
+	const int32_t pos_usteps = lw_law_pos_usteps(lw_motion_m(&controller->motion));
 
 	return lw_side_direction(side) * (derived->switch_usteps[side] - pos_usteps) >
 	       derived->switch_tolerance_usteps + derived->switch_hysteresis_usteps;
@@ -12,7 +12,7 @@ static bool surely_inward(const struct lw_controller *controller, int side)
 
 static bool in_reversal(const struct lw_controller *controller, int side)
 {
-	return lw_law_region(controller->motion.window, controller->motion.law.m) ==
+	return lw_law_region(controller->motion.window, lw_motion_m(&controller->motion)) ==
 	       -lw_side_direction(side);
 }
 
@@ -21,13 +21,13 @@ void lw_tracking_start(struct lw_controller *controller)
 	struct lw_motion *motion = &controller->motion;
 
 	if (!controller->on_orbit) {
-		*lw_controller_spare_window(controller) = lw_controller_track_window(controller);
-		motion->window = lw_controller_spare_window(controller);
+		struct lw_law_window *spare = lw_controller_spare_window(controller);
+		const int32_t ks = controller->derived->ks;
+
+		*spare = lw_controller_track_window(controller);
+		lw_motion_place(motion, spare, lw_motion_m(motion),
+				controller->params->handover_direction == LW_SIDE_PLUS ? ks : -ks);
 		motion->requests = 0;
-		motion->law.u = controller->params->handover_direction == LW_SIDE_PLUS
-					? controller->derived->ks
-					: -controller->derived->ks;
-		motion->law.dwell_edges = 0;
 	}
 	controller->on_orbit = false;
 	controller->los_recoveries = 0;
@@ -35,11 +35,11 @@ void lw_tracking_start(struct lw_controller *controller)
 		controller->seen[side] = !surely_inward(controller, side);
 		controller->visiting[side] = in_reversal(controller, side);
 	}
-	motion->reached = 0;
-	motion->pattern_edges = 0;
+	motion->law.turned = 0;
 	motion->stop_at_rest = 0;
 	controller->state = LW_STATE_TRACKING;
-	motion->source = LW_EDGE_SOURCE_ENCODER;
+	lw_motion_begin_pattern(motion);
+	lw_motion_set_source(motion, LW_EDGE_SOURCE_ENCODER);
 }
 
 void lw_tracking_leave(struct lw_controller *controller)
@@ -52,7 +52,8 @@ void lw_tracking_leave(struct lw_controller *controller)
 	controller->on_orbit = !corrected;
 	if (corrected) {
 		/* Out of the pattern a held correction can be made at once. */
-		motion->law.m += correction_usteps * LW_USTEP;
+		lw_motion_place(motion, motion->window,
+				lw_motion_m(motion) + correction_usteps * LW_USTEP, motion->law.u);
 	}
 }
 
@@ -94,22 +95,23 @@ static void judge_trigger(struct lw_controller *controller, int side, int32_t po
 	/* Withdraw an older correction first: this one replaces it. */
 	motion->requests &= (uint8_t)~LW_MOTION_REQUEST_CORRECTION;
 	motion->request_correction_usteps = -error;
-	motion->requests |= LW_MOTION_REQUEST_CORRECTION;
+	lw_motion_request(motion, LW_MOTION_REQUEST_CORRECTION);
 }
 
 /** Has a reversal been entered whose switch did not trigger on the way? */
 static void judge_reversal(struct lw_controller *controller, int side)
 {
 	struct lw_motion *motion = &controller->motion;
-	const uint8_t bit = side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS;
-	const bool reached = atomic_fetch_and(&motion->reached, (uint8_t)~bit) & bit;
+	const bool turned =
+		lw_motion_take_turned(motion, side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS);
 
-	if (!reached && !in_reversal(controller, side)) {
+	/* Where it is now, and what came and went since the last tick. */
+	if (!turned && !in_reversal(controller, side)) {
 		controller->visiting[side] = false;
-	} else if (reached && !controller->visiting[side]) {
+	} else if (!controller->visiting[side]) {
 		controller->visiting[side] = true;
 		if (!controller->seen[side]) {
-			record(controller, &controller->los1[side], motion->law.m);
+			record(controller, &controller->los1[side], lw_motion_m(motion));
 		}
 	}
 	/* Before its correction the position says nothing about where a switch is. */

@@ -100,8 +100,8 @@ ZTEST(interrupt_cost, test_an_edge_costs_what_it_may)
 
 	zassert_ok(lw_params_derive(&lw_params_default, &derived, &why));
 	lw_controller_init(&controller, &lw_params_default, &derived, &inputs, 0);
-	controller.motion.law = (struct lw_law){.m = 0, .u = derived.ks};
-	controller.motion.source = LW_EDGE_SOURCE_ENCODER;
+	lw_motion_place(&controller.motion, controller.motion.window, 0, derived.ks);
+	lw_motion_set_source(&controller.motion, LW_EDGE_SOURCE_ENCODER);
 	controller.state = LW_STATE_TRACKING;
 
 	SysTick->CTRL &= ~SysTick_CTRL_ENABLE_Msk; /* no other interrupt */
@@ -125,8 +125,8 @@ ZTEST(interrupt_cost, test_an_edge_costs_what_it_may)
 	SysTick->CTRL |= SysTick_CTRL_ENABLE_Msk;
 	print("core, one transition", &core);
 	print("operating system, entry and exit", &system);
-	zassert_equal(controller.motion.net_edges, EDGES / 2);
-	zassert_equal(position_usteps, lw_law_pos_usteps(controller.motion.law.m));
+	zassert_equal(controller.motion.edges, EDGES / 2);
+	zassert_equal(position_usteps, lw_law_pos_usteps(lw_motion_m(&controller.motion)));
 	zassert_true(core.max <= CORE_MAX_INSTRUCTIONS);
 	zassert_true(system.max <= SYSTEM_MAX_INSTRUCTIONS);
 }

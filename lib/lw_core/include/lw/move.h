@@ -27,27 +27,27 @@ static inline int64_t lw_move_overshoot_q16(int32_t ka, int32_t nr)
 }
 
 /**
- * Plan an endless run in one direction: `law` starts at rest so that the slope is exactly Ks at
- * position 0 after Nr edges (doc/control-law.md section 3, indexing ramp), and stays there.
+ * Plan an endless run in one direction, from rest: the slope is exactly Ks at position 0 after Nr
+ * edges (doc/control-law.md section 3, indexing ramp), and stays there.
  *
  * @param direction +1 or -1
+ * @return the position to start at, Q16.16
  */
-void lw_move_run(struct lw_law *law, struct lw_law_window *window, int32_t ka, int32_t nr,
-		 int direction);
+int32_t lw_move_run(struct lw_law_window *window, int32_t ka, int32_t nr, int direction);
 
 /**
  * Plan a move of the resting carriage to a place. It ends less than one microstep from there; a
  * short way is done at a lower slope.
  *
- * @param law at rest: u = 0; not changed
+ * @param m position of the carriage, Q16.16
  * @param target_usteps within the range of a position
- * @retval true `window` is set: take timer edges until u is 0 again
+ * @retval true `window` is set: take timer edges from u = 0 until u is 0 again
  * @retval false the carriage is there already (less than one microstep away)
  */
-bool lw_move_to(const struct lw_law *law, struct lw_law_window *window, int32_t ka, int32_t nr,
+bool lw_move_to(int32_t m, struct lw_law_window *window, int32_t ka, int32_t nr,
 		int32_t target_usteps);
 
-/** Plan the ramp down to rest from here, whatever the slope is. */
-void lw_move_halt(const struct lw_law *law, struct lw_law_window *window, int32_t ka);
+/** Plan the ramp down to rest, from any position and from the slope u. */
+void lw_move_halt(int32_t u, struct lw_law_window *window, int32_t ka);
 
 #endif /* LW_MOVE_H */
