@@ -1,73 +1,118 @@
-"""Three independent masters, pymodbus, libmodbus (the C client) and mbpoll, see the same slave."""
+"""What is promised to every master: four of them, written by others, use the same slave."""
 
 import os
 import re
 import subprocess
+from collections.abc import Iterator
 
 import pytest
-from levelwind.map_table import POINTS
-from slave import TEST_DIR, UNIT, Slave
+from levelwind.map_table import POINTS, Command, Reason, Result, State
+from levelwind.points import lookup, runs
+from masters import MASTERS, ExceptionAnswer, Master, Pymodbus
+from slave import TEST_DIR, Slave
 
-REGISTERS = [
-    "self_test",
-    "map_version",
-    "state",
-    "nr",
-    "ks",
-    "reversal_minus_usteps",
-    "overshoot_actual_um",
-    "encoder_pulses_per_rev",
-    "reversal_minus_um",
-    "baud_rate",
-]
+SPACES = ("coil", "discrete", "holding", "input")
+COPIES = ("active", "stored")
 
 
-MBPOLL = ["mbpoll", "-m", "rtu", "-a", str(UNIT), "-b", "19200", "-P", "none", "-0", "-1", "-q"]
+@pytest.fixture(params=MASTERS, ids=lambda kind: kind.__name__.lower())
+def kind(request: pytest.FixtureRequest) -> type[Master]:
+    return request.param
 
 
-def mbpoll(port: str, *options: str, write: str = "") -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [*MBPOLL, "-o", "2", *options, port, *write.split()],
-        capture_output=True,
-        text=True,
-        timeout=20,
-        check=False,
-    )
+@pytest.fixture
+def master(slave: Slave, kind: type[Master]) -> Iterator[Master]:
+    """A master on the line of a slave at rest; nobody else has the port open."""
+    slave.close()
+    opened = kind(slave.port)
+    yield opened
+    opened.close()
 
 
-def mbpoll_read(port: str, name: str) -> int:
+def read_everything(master: Master) -> dict[tuple[str, int], int]:
+    """Every register and bit of the map, in requests as long as they can be."""
+    points = list(POINTS.values())
+    points += [
+        lookup(f"{copy}.{p.name}") for p in points if p.block == "parameters" for copy in COPIES
+    ]
+    values = {}
+    for space in SPACES:
+        for run in runs((p for p in points if p.space == space), 125):
+            words = master.read(space, run.address, run.count)
+            assert len(words) == run.count
+            values |= {(space, run.address + i): word for i, word in enumerate(words)}
+    return values
+
+
+def read_point(master: Master, name: str) -> int:
+    point = lookup(name)
+    words = master.read(point.space, point.address, point.words)
+    return int.from_bytes(b"".join(word.to_bytes(2, "big") for word in words), "big")
+
+
+def write_point(master: Master, name: str, value: int) -> None:
     point = POINTS[name]
-    kind = {"input": "3", "holding": "4"}[point.space]
-    options = ["-t", f"{kind}:int", "-B"] if point.words == 2 else ["-t", kind]
-    answer = mbpoll(port, *options, "-r", str(point.address))
-    assert answer.returncode == 0, answer.stdout + answer.stderr
-    match = re.search(rf"\[{point.address}\]:\s+(-?\d+)(?: \((-\d+)\))?", answer.stdout)
-    assert match, answer.stdout
-    value = int(match[1])
-    return value - 0x10000 if point.type == "i16" and value > 0x7FFF else value
+    words = [value >> 16 * (point.words - 1 - i) & 0xFFFF for i in range(point.words)]
+    master.write(point.address, words)
 
 
-@pytest.mark.parametrize("name", REGISTERS)
-def test_mbpoll_and_pymodbus_agree(slave: Slave, name: str) -> None:
-    expected = slave.read(name)
+def run_command(master: Master, command: Command) -> None:
+    before = read_point(master, "command_sequence")
+    write_point(master, "command", command)
+    while read_point(master, "command_result") == Result.IN_PROGRESS:
+        pass
+    assert read_point(master, "command_sequence") == (before + 1) & 0xFFFF
+    assert read_point(master, "command_code") == command
+    assert read_point(master, "command_result") == Result.DONE
+
+
+def test_full_read(slave: Slave, kind: type[Master]) -> None:
+    """Whatever does not change by itself reads the same for every master."""
     slave.close()
-    value = mbpoll_read(slave.port, name)
-    assert value & 0xFFFFFFFF == expected & 0xFFFFFFFF
+    references = []
+    for read_by in (Pymodbus, kind, Pymodbus):
+        master = read_by(slave.port)
+        references.append(read_everything(master))
+        master.close()
+    before, values, after = references
+    steady = {at: value for at, value in before.items() if after[at] == value}
+    assert len(steady) > 0.9 * len(before)
+    assert {at: values[at] for at in steady} == steady
 
 
-def test_mbpoll_changes_a_parameter_and_is_refused(slave: Slave) -> None:
+def test_parameter_change_apply_and_save(master: Master) -> None:
+    for pitch_um in (11_000, 12_000):
+        write_point(master, "pitch_um", pitch_um)
+        assert read_point(master, "pitch_um") == pitch_um
+        assert read_point(master, "active.pitch_um") != pitch_um
+        run_command(master, Command.APPLY)
+        assert read_point(master, "active.pitch_um") == pitch_um
+        run_command(master, Command.SAVE)
+        assert read_point(master, "stored.pitch_um") == pitch_um
+
+
+def test_bad_requests(slave: Slave, kind: type[Master]) -> None:
+    assert slave.command(Command.INDEX) == Result.DONE
+    slave.wait(lambda: slave.read("state") == State.TRACKING)
     slave.close()
-    address = str(POINTS["encoder_pulses_per_rev"].address)
-    good = mbpoll(slave.port, "-t", "4", "-r", address, write="500")
-    assert good.returncode == 0, good.stdout + good.stderr
-    bad = mbpoll(slave.port, "-t", "4", "-r", address, write="0")
-    assert bad.returncode != 0
-    assert "Illegal data value" in bad.stdout + bad.stderr
-    missing = mbpoll(slave.port, "-t", "4", "-r", "50", write="1")
-    assert "Illegal data address" in missing.stdout + missing.stderr
-    again = Slave(slave.port)
-    assert again.read("encoder_pulses_per_rev") == 500
-    again.close()
+    master = kind(slave.port)
+    pitch = POINTS["pitch_um"].address
+    for request, exception, reason in (
+        (lambda: master.read("input", 50, 1), 2, Reason.UNKNOWN_ADDRESS),
+        (lambda: master.read("holding", 100, 10), 2, Reason.UNKNOWN_ADDRESS),
+        (lambda: master.write(50, [1]), 2, Reason.UNKNOWN_ADDRESS),
+        (lambda: master.write(pitch, [0]), 2, Reason.HALF_OF_PAIR),
+        (lambda: write_point(master, "encoder_pulses_per_rev", 0), 3, Reason.OUT_OF_RANGE),
+        (lambda: write_point(master, "command", Command.SAVE), 6, Reason.BUSY_TRACKING),
+        (lambda: write_point(master, "pitch_um", 11_000), 6, Reason.BUSY_TRACKING),
+    ):
+        with pytest.raises(ExceptionAnswer) as answer:
+            request()
+        assert answer.value.code == exception, reason
+        assert read_point(master, "last_error_reason") == reason
+        assert read_point(master, "last_error_exception") == exception
+    assert read_point(master, "pitch_um") == 12_000
+    master.close()
 
 
 def test_libmodbus_client(slave: Slave) -> None:
