@@ -12,6 +12,7 @@ from pathlib import Path
 import emit_client
 import emit_core
 import emit_documents
+import emit_pictures
 import emit_python
 from map_model import MapError, load
 
@@ -23,6 +24,8 @@ OUTPUTS = {
     "host_tools/c/generated/levelwind_map.h": emit_client.map_h,
     "host_tools/c/generated/levelwind_map.c": emit_client.map_c,
     "doc/registers.md": emit_documents.registers_md,
+    "doc/states.svg": emit_pictures.states_svg,
+    "doc/parameter_change.svg": emit_pictures.handshake_svg,
     "modbus_map/tags.csv": emit_documents.tags_csv,
 }
 
@@ -33,15 +36,15 @@ def main() -> int:
     check = parser.parse_args().check
     try:
         map_ = load()
+        contents = {name: emit(map_).encode("ascii") for name, emit in OUTPUTS.items()}
     except MapError as error:
         for line in error.args:
             print(f"modbus_map/registers.yaml: {line}", file=sys.stderr)
         return 1
 
     drifted = False
-    for name, emit in OUTPUTS.items():
+    for name, content in contents.items():
         path = ROOT / name
-        content = emit(map_).encode("ascii")
         if path.exists() and path.read_bytes() == content:
             continue
         if check:

@@ -13,6 +13,7 @@ import yaml
 FOLDER = Path(__file__).resolve().parent
 sys.path.insert(0, str(FOLDER))
 
+import emit_pictures  # noqa: E402
 import map_model  # noqa: E402
 
 RAW = yaml.safe_load((FOLDER / "registers.yaml").read_text(encoding="utf-8"))
@@ -152,3 +153,10 @@ def test_a_drifted_file_is_named(tmp_path: Path) -> None:
         "doc/registers.md is not what modbus_map/registers.yaml makes. "
         "Run: python3 modbus_map/generate.py"
     ]
+
+
+def test_a_state_that_the_picture_does_not_show_is_found() -> None:
+    raw = copy.deepcopy(RAW)
+    raw["enums"]["state"]["values"]["waiting"] = {"value": 13, "text": "New"}
+    with pytest.raises(map_model.MapError, match="differ: waiting"):
+        emit_pictures.states_svg(map_model.check(raw))
