@@ -235,6 +235,21 @@ static void test_a_set_that_does_not_fit_together_is_refused_and_explained(void)
 	TEST_ASSERT_EQUAL_INT(0, parameter("park_position_um", LEVELWIND_SET_ACTIVE));
 }
 
+static void test_the_write_lock_opens_by_its_code(void)
+{
+	TEST_OK(levelwind_set_parameter(&client, "lock_code", 4711));
+	TEST_OK(levelwind_command(&client, LEVELWIND_COMMAND_APPLY, 1000, NULL));
+	TEST_ASSERT_EQUAL_INT(-EBUSY, levelwind_set_parameter(&client, "pitch_um", 11000));
+	assert_error_text_has("The write lock is closed");
+	TEST_OK(levelwind_unlock(&client, 4711));
+	TEST_OK(levelwind_set_parameter(&client, "pitch_um", 11000));
+	TEST_OK(levelwind_unlock(&client, 0));
+	TEST_ASSERT_EQUAL_INT(-EBUSY, levelwind_set_parameter(&client, "pitch_um", 12000));
+	TEST_OK(levelwind_unlock(&client, 4711));
+	TEST_OK(levelwind_set_parameter(&client, "lock_code", 0));
+	TEST_OK(levelwind_command(&client, LEVELWIND_COMMAND_APPLY, 1000, NULL));
+}
+
 static void test_trims_are_read_back(void)
 {
 	TEST_OK(levelwind_set_trim(&client, -300, 400));
@@ -309,6 +324,7 @@ int main(void)
 	RUN_TEST(test_a_value_outside_its_limits_is_not_sent);
 	RUN_TEST(test_a_name_that_is_no_parameter_is_refused);
 	RUN_TEST(test_a_set_that_does_not_fit_together_is_refused_and_explained);
+	RUN_TEST(test_the_write_lock_opens_by_its_code);
 	RUN_TEST(test_trims_are_read_back);
 	RUN_TEST(test_each_command_counts_once);
 	RUN_TEST(test_a_command_refused_now_is_explained);

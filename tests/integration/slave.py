@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import serial
-from levelwind.map_table import POINTS, Command, Flag, Mode, Result, State
+from levelwind.map_table import POINTS, Command, Flag, Mode, Point, Result, State
 from pymodbus.client import ModbusSerialClient
 
 UNIT = 1
@@ -116,6 +116,14 @@ def join_terminals() -> tuple[Path, Path]:
     return paths[0], paths[1]
 
 
+def decode(point: Point, registers: list[int]) -> int:
+    """The value in the registers of a point, high word first."""
+    words = registers[: point.words]
+    value = int.from_bytes(b"".join(word.to_bytes(2, "big") for word in words), "big")
+    bits = 16 * point.words
+    return value - (1 << bits) if point.type.startswith("i") and value >> (bits - 1) else value
+
+
 class Slave:
     """Registers by name, through pymodbus. Knows the map, nothing of the tool's code."""
 
@@ -129,6 +137,15 @@ class Slave:
     def close(self) -> None:
         self.client.close()
 
+    def read_run(self, *names: str) -> dict[str, int]:
+        """Input registers that lie close together, in one request."""
+        points = [POINTS[name] for name in names]
+        first = min(point.address for point in points)
+        count = max(point.address + point.words for point in points) - first
+        answer = self.client.read_input_registers(first, count=count, device_id=UNIT)
+        assert not answer.isError(), f"{names}: {answer}"
+        return {p.name: decode(p, answer.registers[p.address - first :]) for p in points}
+
     def read(self, name: str, offset: int = 0) -> int:
         """One register value; `offset` 1000 and 2000 reach the active and the stored set."""
         point = POINTS[name]
@@ -139,11 +156,7 @@ class Slave:
         }[space]
         answer = function(point.address + offset, count=point.words, device_id=UNIT)
         assert not answer.isError(), f"{name}: {answer}"
-        value = int.from_bytes(
-            b"".join(word.to_bytes(2, "big") for word in answer.registers), "big"
-        )
-        bits = 16 * point.words
-        return value - (1 << bits) if point.type.startswith("i") and value >> (bits - 1) else value
+        return decode(point, answer.registers)
 
     def write(self, name: str, value: int, *, function: int | None = None) -> int:
         """Write one value; the exception code, 0 if it was taken."""

@@ -3,11 +3,14 @@
 from itertools import count
 
 import pytest
+from levelwind.ideal_screw import Screw
+from levelwind.ideal_screw import State as LawState
 from levelwind.map_table import Command, Flag, Reason, Result, State
 from slave import Slave
 
 FASTEST_MILLIRPM = 1_000_000  # 2,880 edges per drum revolution: 48,000 edges/s
 TRANSITIONS_PER_EDGE = 2
+USTEP = 65536
 
 
 @pytest.fixture
@@ -46,6 +49,33 @@ def test_apply_while_the_drum_turns(slave: Slave, duration_ms: int) -> None:
     come_to_rest(slave)
     assert abs(edges_missed(slave) - missed) <= 1  # the drum may rest between two edges
     assert slave.read("illegal_transitions") == illegal
+
+
+def test_every_read_is_of_one_moment(slave: Slave, duration_ms: int) -> None:
+    """Position, slope and edge counts of one request belong together, by the ideal screw."""
+    names = ("position_um", "position_usteps", "m", "u", "net_edges", "pattern_edges")
+    assert slave.command(Command.INDEX) == Result.DONE
+    slave.wait(lambda: slave.read("state") == State.TRACKING)
+    start = slave.read_run(*names)
+    assert start["pattern_edges"] == 0
+    screw = Screw(
+        *(slave.read(name) for name in ("ka", "nr")),
+        *(slave.read(f"reversal_{side}_usteps") for side in ("plus", "minus")),
+        *(slave.read(f"dwell_{side}_edges") for side in ("plus", "minus")),
+    )
+    orbit = screw.orbit(LawState(start["m"], start["u"]))
+    um_per_m = slave.read("screw_lead_um") / slave.read("microsteps_per_rev") / USTEP
+    spin(slave)
+    end_ms = slave.read("uptime_ms") + duration_ms // 2
+    while slave.read("uptime_ms") < end_ms:
+        for _ in range(20):
+            now = slave.read_run(*names)
+            ideal = orbit.after(now["pattern_edges"])
+            assert (now["m"], now["u"]) == (ideal.m, ideal.u)
+            assert now["position_usteps"] == now["m"] // USTEP
+            assert abs(now["position_um"] - now["m"] * um_per_m) <= 1
+            assert now["net_edges"] - now["pattern_edges"] == start["net_edges"]
+    come_to_rest(slave)
 
 
 def test_trim_and_refused_apply_while_tracking(slave: Slave, duration_ms: int) -> None:

@@ -136,6 +136,16 @@ int levelwind_jog(struct levelwind_client *client, int direction);
 int levelwind_set_trim(struct levelwind_client *client, int32_t plus_um, int32_t minus_um);
 
 /**
+ * Open the write lock for the parameter lock_timeout_s, or close it.
+ *
+ * @param code the parameter lock_code; 0 closes
+ * @retval 0 done
+ * @retval -EINVAL a wrong code
+ * @retval -EBUSY too soon after a wrong code
+ */
+int levelwind_unlock(struct levelwind_client *client, int32_t code);
+
+/**
  * Give a command and wait until it has ended.
  *
  * @param timeout_ms how long to wait for the end; indexing takes as long as the carriage travels

@@ -414,6 +414,11 @@ int levelwind_set_trim(struct levelwind_client *client, int32_t plus_um, int32_t
 	return write_holdings(client, "trim", LEVELWIND_ADDRESS_TRIM_PLUS_UM, 2, words);
 }
 
+int levelwind_unlock(struct levelwind_client *client, int32_t code)
+{
+	return write_point(client, "unlock", levelwind_find_point("unlock"), code);
+}
+
 static int64_t monotonic_ms(void)
 {
 	struct timespec now;
