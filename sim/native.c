@@ -179,12 +179,11 @@ void lw_native_world_run_ns(struct lw_world *world, uint64_t duration_ns)
 	lw_world_run(world, world->now_ns + duration_ns);
 }
 
-/** One Modbus request to the controller, without a line between. */
+/** lw_world_request() */
 size_t lw_native_world_request(struct lw_world *world, const uint8_t *request, size_t length,
 			       uint8_t response[LW_PDU_MAX])
 {
-	world->device.slave.last_request_us = world->now_ns / 1000u; /* the master is alive */
-	return lw_pdu_handle(&world->device.slave.pdu, request, length, response);
+	return lw_world_request(world, request, length, response);
 }
 
 /**

@@ -6,6 +6,12 @@
 #define NS_PER_US 1000u
 #define TICK_NS   (LW_CONTROLLER_TICK_US * NS_PER_US)
 
+/** The controller's clock: it starts with the power. */
+static uint64_t controller_us(const struct lw_world *world)
+{
+	return (world->now_ns - world->power_up_ns) / NS_PER_US;
+}
+
 static void power_up(struct lw_world *world, uint64_t slave_now_us)
 {
 	const struct lw_plant_pins *pins = &world->plant.pins;
@@ -16,8 +22,9 @@ static void power_up(struct lw_world *world, uint64_t slave_now_us)
 		inputs.limit[side].nc_closed = pins->limit[side].nc_closed;
 		inputs.overtravel[side] = pins->overtravel[side];
 	}
+	world->power_up_ns = world->now_ns;
 	lw_device_init(&world->device, &world->device_config, world->storage, world->storage_length,
-		       &inputs, world->now_ns / NS_PER_US, slave_now_us);
+		       &inputs, controller_us(world), slave_now_us);
 	/* Without a controller there is no current; the first tick switches it on. */
 	lw_plant_enable(&world->plant, false);
 	world->stepper_enabled = false;
@@ -100,7 +107,7 @@ static void tick(struct lw_world *world)
 		world->bench.power_cut = false;
 		power_up(world, world->device.slave.last_request_us);
 	}
-	lw_device_tick(&world->device, world->now_ns / NS_PER_US);
+	lw_device_tick(&world->device, controller_us(world));
 	save(world);
 	serve_outputs(world);
 	if (world->config.observe != NULL) {
@@ -108,10 +115,13 @@ static void tick(struct lw_world *world)
 	}
 }
 
-static void step(struct lw_world *world, int direction)
+static void edge(struct lw_world *world, enum lw_edge_source source, int step)
 {
-	if (direction != 0) {
-		lw_plant_step(&world->plant, direction);
+	if (step != 0) {
+		lw_plant_step(&world->plant, step);
+	}
+	if (world->config.observe_edge != NULL) {
+		world->config.observe_edge(world->config.context, source, step);
 	}
 }
 
@@ -123,7 +133,8 @@ static void plant_event(struct lw_world *world)
 	const uint32_t changed = lw_plant_advance(&world->plant);
 
 	if (changed & LW_PLANT_ENCODER) {
-		step(world, lw_controller_encoder(controller, pins->encoder_a, pins->encoder_b));
+		edge(world, LW_EDGE_SOURCE_ENCODER,
+		     lw_controller_encoder(controller, pins->encoder_a, pins->encoder_b));
 	}
 	if (!(changed & ~(uint32_t)LW_PLANT_ENCODER)) {
 		return;
@@ -131,7 +142,7 @@ static void plant_event(struct lw_world *world)
 	for (int side = 0; side < 2; side++) {
 		if (changed & (side == LW_PLUS ? LW_PLANT_LIMIT_PLUS : LW_PLANT_LIMIT_MINUS)) {
 			lw_controller_limit(controller, side, pins->limit[side].no_closed,
-					    pins->limit[side].nc_closed, world->now_ns / NS_PER_US);
+					    pins->limit[side].nc_closed, controller_us(world));
 		}
 		if (changed &
 		    (side == LW_PLUS ? LW_PLANT_OVERTRAVEL_PLUS : LW_PLANT_OVERTRAVEL_MINUS)) {
@@ -156,7 +167,8 @@ void lw_world_run(struct lw_world *world, uint64_t until_ns)
 		} else if (world->timer_ns <= world->tick_ns) {
 			world->now_ns = world->timer_ns;
 			world->timer_ns += 1000000000u / world->timer_rate_edges_per_s;
-			step(world, lw_controller_timer_edge(&world->device.controller));
+			edge(world, LW_EDGE_SOURCE_TIMER,
+			     lw_controller_timer_edge(&world->device.controller));
 		} else {
 			world->now_ns = world->tick_ns;
 			world->tick_ns += TICK_NS;
@@ -164,4 +176,11 @@ void lw_world_run(struct lw_world *world, uint64_t until_ns)
 		}
 	}
 	world->now_ns = until_ns;
+}
+
+size_t lw_world_request(struct lw_world *world, const uint8_t *request, size_t length,
+			uint8_t response[LW_PDU_MAX])
+{
+	world->device.slave.last_request_us = world->now_ns / NS_PER_US; /* the master is alive */
+	return lw_pdu_handle(&world->device.slave.pdu, request, length, response);
 }

@@ -30,13 +30,17 @@ struct lw_world_config {
 	int (*store)(void *context, const uint8_t *record, size_t length);
 	/** Called after every tick, once per millisecond of virtual time. May be NULL. */
 	void (*observe)(void *context);
+	/** Called after every transition of the encoder and every edge of the edge timer, with the
+	 *  step pulse that it gave: +1, 0, -1. May be NULL. */
+	void (*observe_edge)(void *context, enum lw_edge_source source, int step);
 };
 
 /** State. Read the parts through their own interfaces. */
 struct lw_world {
 	struct lw_device device;
 	struct lw_plant plant;
-	uint64_t now_ns; /**< virtual time */
+	uint64_t now_ns;      /**< virtual time */
+	uint64_t power_up_ns; /**< virtual time of the controller's last power-up */
 
 	struct lw_world_config config;
 	struct lw_device_config device_config;
@@ -63,5 +67,14 @@ int lw_world_init(struct lw_world *world, const struct lw_world_config *config,
 
 /** Let virtual time pass until `until_ns`. */
 void lw_world_run(struct lw_world *world, uint64_t until_ns);
+
+/**
+ * One Modbus request to the controller, without a line between.
+ *
+ * @param request function code and data
+ * @return length of the response: function code and data
+ */
+size_t lw_world_request(struct lw_world *world, const uint8_t *request, size_t length,
+			uint8_t response[LW_PDU_MAX]);
 
 #endif /* LW_WORLD_H */

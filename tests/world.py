@@ -7,7 +7,7 @@ Everything goes the way that a master goes: as Modbus requests, by the names of 
 import ctypes
 import functools
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from ctypes import POINTER, c_bool, c_double, c_int, c_int32, c_int64, c_size_t, c_uint8, c_uint64
 from enum import IntEnum
 from typing import NamedTuple
@@ -28,11 +28,22 @@ MILLIRPM_PER_EDGE_PER_S = 60_000 / 2880
 
 
 class PlantFault(IntEnum):
-    """enum lw_plant_fault: what the registers of the bench cannot do."""
+    """enum lw_plant_fault."""
 
     STALL_MS = 0
     SLIP_USTEPS = 1
     SIDE_LOAD_MM_PER_S2 = 2
+    BOUNCE_US = 3
+    LIMIT_PLUS = 4  # SwitchFault
+    LIMIT_MINUS = 5
+    OVERTRAVEL_PLUS = 6  # SwitchFault
+    OVERTRAVEL_MINUS = 7
+    ENCODER_LOSE_PULSES = 8
+    ENCODER_ILLEGAL = 9
+    ENCODER_DITHER = 10
+    PLACE_CARRIAGE_UM = 11
+    CARRIAGE_REVERSED = 12
+    ENCODER_EXTRA_PULSES = 13
 
 
 class Truth(ctypes.Structure):
@@ -106,6 +117,14 @@ def _plan(names: tuple[str, ...]) -> list[tuple[bytes, list[Slice]]]:
     return plan
 
 
+def write_requests(values: Mapping[str, int]) -> Iterator[bytes]:
+    """The Modbus requests that write holding registers by name."""
+    for run in runs((POINTS[name] for name in values), REGISTERS_MAX):
+        words = [word for point in run.points for word in encode(point, values[point.name])]
+        head = struct.pack(">BHHB", 16, run.address, run.count, 2 * run.count)
+        yield head + struct.pack(f">{run.count}H", *words)
+
+
 class World:
     """A machine that has just been switched on."""
 
@@ -174,10 +193,8 @@ class World:
 
     def write(self, **values: int) -> None:
         """Write holding registers by name; raises RequestRefusedError."""
-        for run in runs((POINTS[name] for name in values), REGISTERS_MAX):
-            words = [word for point in run.points for word in encode(point, values[point.name])]
-            head = struct.pack(">BHHB", 16, run.address, run.count, 2 * run.count)
-            self._checked(head + struct.pack(f">{run.count}H", *words))
+        for pdu in write_requests(values):
+            self._checked(pdu)
 
     # ---- the controller ------------------------------------------------------------------------
 

@@ -356,7 +356,7 @@ def test_power_cut_at_any_moment(moment: int):
     saved = world.value("command_result") == Result.DONE and saving
     world.write(bench_command=BenchCommand.POWER_CUT)
     world.run(0.05)
-    assert world.value("uptime_ms") < 1000 or moment == 0 or world.value("command_sequence") == 0
+    assert world.value("uptime_ms") <= 50
     assert world.value("command_sequence") == 0
     assert world.state in (State.UNINDEXED, State.FAULT)
     assert world.flags.isdisjoint({"indexed", "tracking", "launch_permit", "staged", "dirty"})

@@ -1,7 +1,7 @@
 """Limit switches that bounce, and limit switches with broken wires."""
 
 import pytest
-from levelwind.map_table import Fault, LaunchInhibit, State, SwitchFault
+from levelwind.map_table import Fault, LaunchInhibit, Side, State, SwitchContacts, SwitchFault
 from world import World
 
 SIDES = ("plus", "minus")
@@ -128,3 +128,55 @@ def test_wiring_in_a_launch_is_noticed_and_takes_the_permit(side: str, fault: Sw
     world.write(**{f"bench_switch_{side}_fault": SwitchFault.NONE})
     world.run(3.0)
     assert f"wiring_{side}" in world.flags
+
+
+# ---- found by the fault campaign ----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("contacts", [SwitchContacts.SINGLE_NO, SwitchContacts.SINGLE_NC])
+@pytest.mark.parametrize("index_switch", list(Side), ids=lambda s: s.label)
+def test_a_single_contact_that_bounces_past_the_span_tolerance_is_no_fault(
+    contacts: SwitchContacts, index_switch: Side
+):
+    """It closed in its place; only the debouncing took longer than the way to the tolerance."""
+    world = World(
+        switch_contacts=contacts, index_switch=index_switch, index_rate_edges_per_s=40_000
+    )
+    world.write(bench_bounce_ms=3)
+    assert world.index().permit
+
+
+@pytest.mark.parametrize("contacts", [SwitchContacts.SINGLE_NO, SwitchContacts.SINGLE_NC])
+@pytest.mark.parametrize("drum", [1, -1], ids=["in", "out"])
+def test_a_single_contact_that_bounces_past_the_reversal_point_is_no_los(
+    contacts: SwitchContacts, drum: int
+):
+    world = World(switch_contacts=contacts)
+    world.write(bench_bounce_ms=10)
+    world.index().drum(drum * 48_000)
+    world.run(6.0)
+    assert world.value("switch_plus_triggers") > 2
+    assert "los" not in world.flags
+    # It is one as soon as the switch does not close at all.
+    world.write(bench_switch_plus_fault=SwitchFault.STUCK_RELEASED)
+    world.run(2.0)
+    assert "los1_plus" in world.flags
+
+
+@pytest.mark.parametrize("drum", [1, -1], ids=["in", "out"])
+@pytest.mark.parametrize("stuck", [False, True])
+def test_a_reversal_trimmed_close_to_its_switch_waits_for_the_switch_tolerance(
+    drum: int, stuck: bool
+):
+    """Its switch may trigger up to its tolerance late: not before is it missing."""
+    world = World(index_rate_edges_per_s=40_000).index()
+    world.drum(drum * 20_000)
+    world.run(1.0)
+    world.write(trim_plus_um=-1580, trim_minus_um=1580)
+    if stuck:
+        world.write(bench_switch_plus_fault=SwitchFault.STUCK_RELEASED)
+    world.run(8.0)
+    assert world.value("reversal_plus_usteps") == 7842
+    assert world.value("switch_minus_triggers") > 2
+    assert ("los1_plus" in world.flags) == stuck
+    assert not world.flags & {"los1_minus", "los2_plus", "los2_minus"}

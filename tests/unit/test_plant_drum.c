@@ -238,8 +238,25 @@ static void test_dither_of_a_turning_drum_stays_legal_and_nets_to_zero(void)
 				rig.encoder_events - events);
 }
 
-static void test_negative_counts_are_refused(void)
+static void test_extra_pulses_are_legal_and_stay(void)
 {
+	TEST_ASSERT_EQUAL_INT(0, lw_plant_drum_target(&rig.plant, -200000));
+	rig_run(&rig, S);
+	TEST_ASSERT_EQUAL_INT(0,
+			      lw_plant_inject(&rig.plant, LW_PLANT_FAULT_ENCODER_EXTRA_PULSES, 7));
+	TEST_ASSERT_EQUAL_INT(0, lw_plant_inject(&rig.plant, LW_PLANT_FAULT_ENCODER_DITHER, 10));
+	rig_run(&rig, S);
+	TEST_ASSERT_EQUAL_UINT32(0, rig.illegal);
+	TEST_ASSERT_EQUAL_INT64(rig_truth(&rig).drum_transitions + 4 * 7, rig.decoded);
+}
+
+static void test_counts_out_of_range_are_refused(void)
+{
+	TEST_ASSERT_EQUAL_INT(-ERANGE,
+			      lw_plant_inject(&rig.plant, LW_PLANT_FAULT_ENCODER_EXTRA_PULSES, -1));
+	TEST_ASSERT_EQUAL_INT(
+		-ERANGE,
+		lw_plant_inject(&rig.plant, LW_PLANT_FAULT_ENCODER_EXTRA_PULSES, 100000001));
 	TEST_ASSERT_EQUAL_INT(-ERANGE,
 			      lw_plant_inject(&rig.plant, LW_PLANT_FAULT_ENCODER_LOSE_PULSES, -1));
 	TEST_ASSERT_EQUAL_INT(-ERANGE,
@@ -265,6 +282,7 @@ int main(void)
 	RUN_TEST(test_illegal_fault_changes_both_channels_at_once);
 	RUN_TEST(test_dither_rocks_forth_and_back);
 	RUN_TEST(test_dither_of_a_turning_drum_stays_legal_and_nets_to_zero);
-	RUN_TEST(test_negative_counts_are_refused);
+	RUN_TEST(test_extra_pulses_are_legal_and_stay);
+	RUN_TEST(test_counts_out_of_range_are_refused);
 	return UNITY_END();
 }

@@ -209,8 +209,9 @@ static void tick_span_check(struct lw_controller *controller,
 		} else {
 			start_parking(controller);
 		}
-	} else if (direction * (pos_usteps(controller) - derived->switch_usteps[side]) >
-			   derived->span_tolerance_usteps ||
+	} else if ((direction * (pos_usteps(controller) - derived->switch_usteps[side]) >
+			    derived->span_tolerance_usteps &&
+		    !controller->limit[side].candidate) || /* closed in time, still bouncing? */
 		   lw_controller_moves_toward(lw_motion_direction(&controller->motion), !side)) {
 		/* Too far, or turned round already: the switch did not trigger where it should. */
 		controller->span_error_usteps =

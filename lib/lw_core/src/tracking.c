@@ -98,12 +98,27 @@ static void judge_trigger(struct lw_controller *controller, int side, int32_t po
 	lw_motion_request(motion, LW_MOTION_REQUEST_CORRECTION);
 }
 
+/** May the switch of a reversal that has been entered still trigger in time? */
+static bool may_trigger(const struct lw_controller *controller, int side)
+{
+	const struct lw_derived *derived = controller->derived;
+	const int32_t pos_usteps = lw_law_pos_usteps(lw_motion_m(&controller->motion));
+	const int32_t past = lw_side_direction(side) * (pos_usteps - derived->switch_usteps[side]);
+
+	return in_reversal(controller, side) && !controller->seen[side] &&
+	       (past <= derived->switch_tolerance_usteps || controller->limit[side].candidate);
+}
+
 /** Has a reversal been entered whose switch did not trigger on the way? */
 static void judge_reversal(struct lw_controller *controller, int side)
 {
 	struct lw_motion *motion = &controller->motion;
-	const bool turned =
-		lw_motion_take_turned(motion, side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS);
+	bool turned;
+
+	if (may_trigger(controller, side)) {
+		return;
+	}
+	turned = lw_motion_take_turned(motion, side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS);
 
 	/* Where it is now, and what came and went since the last tick. */
 	if (!turned && !in_reversal(controller, side)) {

@@ -113,7 +113,8 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 /** A leads B for rising positions: 00, 10, 11, 01. */
 static uint32_t show(struct lw_plant *plant, int64_t transitions)
 {
-	uint32_t shown = (uint32_t)(transitions + plant->drum.dithered);
+	uint32_t shown =
+		(uint32_t)(transitions + plant->drum.extra_transitions + plant->drum.dithered);
 	bool a = ((shown ^ (shown >> 1)) & 1u) != 0;
 	bool b = ((shown >> 1) & 1u) != 0;
 	uint32_t changed = 0;
@@ -166,12 +167,16 @@ uint32_t lw_plant_drum_dither(struct lw_plant *plant)
 {
 	struct lw_plant_drum *drum = &plant->drum;
 
-	if (drum->dither_changes == 0) {
+	if (drum->extra_changes > 0) {
+		drum->extra_changes--;
+		drum->extra_transitions++;
+	} else if (drum->dither_changes > 0) {
+		drum->dither_changes--;
+		drum->dithered = !drum->dithered;
+	} else {
 		drum->dither_ns = LW_PLANT_NEVER_NS;
 		return 0;
 	}
-	drum->dither_changes--;
-	drum->dithered = !drum->dithered;
 	drum->dither_ns = plant->now_ns + DITHER_INTERVAL_NS;
 	return show(plant, shown_transitions(drum));
 }

@@ -8,6 +8,7 @@
 #include "plant_internal.h"
 
 #define BOUNCE_MAX_US 1000000
+#define PULSES_MAX    100000000 /* four transitions each still fit a counter */
 #define UM_PER_MM     1000.0
 
 static bool within_flanges(const struct lw_plant *plant, int32_t position_um)
@@ -34,7 +35,8 @@ static int check(const struct lw_plant *plant, enum lw_plant_fault fault, int32_
 	case LW_PLANT_FAULT_ENCODER_LOSE_PULSES:
 	case LW_PLANT_FAULT_ENCODER_ILLEGAL:
 	case LW_PLANT_FAULT_ENCODER_DITHER:
-		return argument >= 0 ? 0 : -ERANGE;
+	case LW_PLANT_FAULT_ENCODER_EXTRA_PULSES:
+		return argument >= 0 && argument <= PULSES_MAX ? 0 : -ERANGE;
 	case LW_PLANT_FAULT_PLACE_CARRIAGE:
 		return within_flanges(plant, argument) ? 0 : -ERANGE;
 	case LW_PLANT_FAULT_CARRIAGE_REVERSED:
@@ -88,6 +90,12 @@ static void dither(struct lw_plant *plant, int32_t count)
 	drum->dither_ns = plant->now_ns;
 }
 
+static void extra_pulses(struct lw_plant *plant, int32_t count)
+{
+	plant->drum.extra_changes = 4u * (uint32_t)count;
+	plant->drum.dither_ns = plant->now_ns;
+}
+
 /** The pins change in an event, never behind the host's back: make one happen now. */
 static void run_now(struct lw_plant *plant)
 {
@@ -138,6 +146,9 @@ int lw_plant_inject(struct lw_plant *plant, enum lw_plant_fault fault, int32_t a
 		break;
 	case LW_PLANT_FAULT_ENCODER_DITHER:
 		dither(plant, argument);
+		break;
+	case LW_PLANT_FAULT_ENCODER_EXTRA_PULSES:
+		extra_pulses(plant, argument);
 		break;
 	case LW_PLANT_FAULT_PLACE_CARRIAGE:
 		lw_plant_carriage_halt(plant, argument * plant->carriage.usteps_per_um);

@@ -17,7 +17,7 @@
 /** The substep in seconds. */
 #define SUBSTEP_S (LW_PLANT_SUBSTEP_NS * S_PER_NS)
 
-/** Time between two changes of a dithering encoder. */
+/** Time between two changes of a dithering encoder, or of pulses that the drum has not made. */
 #define DITHER_INTERVAL_NS 20000u
 
 static inline uint64_t earlier_ns(uint64_t a_ns, uint64_t b_ns)
@@ -42,7 +42,7 @@ void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config
 void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns);
 /** Execute the planned transition. @return pins that changed */
 uint32_t lw_plant_drum_transition(struct lw_plant *plant);
-/** Execute the planned half of a dither. @return pins that changed */
+/** Execute the planned change of a dither or an extra pulse. @return pins that changed */
 uint32_t lw_plant_drum_dither(struct lw_plant *plant);
 
 void lw_plant_carriage_init(struct lw_plant_carriage *carriage,

@@ -157,6 +157,8 @@ enum lw_plant_fault {
 	LW_PLANT_FAULT_PLACE_CARRIAGE,
 	/** 1: the motor turns the wrong way; 0: the right way. */
 	LW_PLANT_FAULT_CARRIAGE_REVERSED,
+	/** Show N whole pulses (4 transitions each, 20 us apart) that the drum has not made. */
+	LW_PLANT_FAULT_ENCODER_EXTRA_PULSES,
 	LW_PLANT_FAULT_COUNT,
 };
 
@@ -226,6 +228,7 @@ struct lw_plant_drum {
 	uint64_t profile_start_ns;
 	int64_t transitions;
 	int64_t held_transitions;
+	int64_t extra_transitions;
 	double transitions_per_milli_rpm_s;
 	double acceleration_milli_rpm_per_s;
 	double speed_milli_rpm;
@@ -241,6 +244,7 @@ struct lw_plant_drum {
 	uint32_t lose_pulses;
 	uint32_t illegal_changes;
 	uint32_t dither_changes;
+	uint32_t extra_changes;
 	int8_t direction;
 	bool dithered;
 };
