@@ -1,0 +1,505 @@
+#include "judge.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "lw/law.h"
+
+/** Microsteps per micrometre of the plant's defaults, which the scenarios keep. */
+#define USTEPS_PER_UM 0.1
+
+/** A limit switch of the plant tells late by the transit of its contact and by its speed shift. */
+#define LATE_S 0.0015
+
+/** Fastest carriage: 60,000 edges/s, where overspeed stops it, times the factory slope. */
+#define CARRIAGE_MAX_USTEPS_PER_S 25000.0
+
+/** A rotor in step is less than a quarter of its electrical period off. */
+#define ROTOR_USTEPS 10.0
+
+static void broken(struct lw_judge *judge, enum lw_invariant invariant, double found, double limit)
+{
+	struct lw_verdict *verdict = &judge->verdict;
+
+	if (verdict->broken < 0) {
+		verdict->broken = (int32_t)invariant;
+		verdict->broken_ms = (uint32_t)(judge->world->now_ns / 1000000u);
+		verdict->found = found;
+		verdict->limit = limit;
+	}
+}
+
+/* ---- the ideal screw ------------------------------------------------------------------------- */
+
+static int region(const struct lw_judge_screw *screw)
+{
+	return screw->m >= screw->end ? -1 : screw->m < screw->begin ? 1 : 0;
+}
+
+/** Edges to rest at the far point where the screw is. */
+static int64_t dwell_edges(const struct lw_judge_screw *screw)
+{
+	return screw->dwell_edges[screw->m >= screw->end ? LW_PLUS : LW_MINUS];
+}
+
+static void turn(struct lw_judge_screw *screw, int dd)
+{
+	if (screw->u == 0 && dd > 0 && screw->rested_edges < dwell_edges(screw)) {
+		screw->rested_edges++;
+	} else if (screw->u == 0 && dd < 0 && screw->rested_edges > 0) {
+		screw->rested_edges--;
+	} else if (dd > 0) {
+		screw->rested_edges = 0;
+		screw->u += region(screw) * screw->ka;
+		screw->m += screw->u;
+	} else {
+		screw->m -= screw->u;
+		screw->u -= region(screw) * screw->ka;
+		screw->rested_edges = screw->u == 0 ? dwell_edges(screw) : 0;
+	}
+}
+
+static void anchor(struct lw_judge *judge, const struct lw_status *status)
+{
+	judge->screw = (struct lw_judge_screw){
+		.ka = status->ka,
+		.ks = status->ks,
+		.begin = (int64_t)(status->reversal_minus_usteps + 1) * LW_USTEP,
+		.end = (int64_t)status->reversal_plus_usteps * LW_USTEP,
+		.dwell_edges = {(int64_t)status->dwell_plus_edges,
+				(int64_t)status->dwell_minus_edges},
+		.m = status->m,
+		.u = status->u,
+	};
+	judge->following = true;
+	judge->recoveries = status->los_recoveries;
+}
+
+/** Edges from a switch to the other one, in either direction of the drum. */
+static int64_t traverse_edges(const struct lw_judge_screw *screw)
+{
+	const int64_t dwell = screw->dwell_edges[LW_PLUS] > screw->dwell_edges[LW_MINUS]
+				      ? screw->dwell_edges[LW_PLUS]
+				      : screw->dwell_edges[LW_MINUS];
+
+	return (screw->end - screw->begin) / screw->ks + 1 + 2 * (screw->ks / screw->ka) + dwell;
+}
+
+/** The tolerance of a lay, see doc/campaign.md. */
+static double tolerance_usteps(const struct lw_judge *judge)
+{
+	return judge->world->device.active.switch_tolerance_um * USTEPS_PER_UM +
+	       LATE_S * CARRIAGE_MAX_USTEPS_PER_S + ROTOR_USTEPS;
+}
+
+/** Edges that a switch may be passed late: from its place to where a reversal is judged. */
+static int64_t slack_edges(const struct lw_judge *judge)
+{
+	const struct lw_params *active = &judge->world->device.active;
+	const int32_t plus_um = active->reversal_plus_um - active->switch_plus_um;
+	const int32_t minus_um = active->switch_minus_um - active->reversal_minus_um;
+	const double usteps =
+		USTEPS_PER_UM * (fmax(plus_um, minus_um) + active->switch_tolerance_um +
+				 active->switch_hysteresis_um) +
+		tolerance_usteps(judge);
+
+	return (int64_t)(usteps * LW_USTEP / (double)judge->screw.ks) + 200;
+}
+
+static void begin_range(struct lw_judge_range *range, int64_t edges)
+{
+	*range = (struct lw_judge_range){.begun = true, .least = edges, .most = edges};
+}
+
+static int64_t widen_range(struct lw_judge_range *range, int64_t edges)
+{
+	range->least = edges < range->least ? edges : range->least;
+	range->most = edges > range->most ? edges : range->most;
+	return range->most - range->least;
+}
+
+/* ---- edges ----------------------------------------------------------------------------------- */
+
+/** Where in a pulse the pins are: A leads B. */
+static int pins_phase(const struct lw_world *world)
+{
+	static const int phases[2][2] = {{0, 3}, {1, 2}};
+
+	return phases[world->plant.pins.encoder_a][world->plant.pins.encoder_b];
+}
+
+/** Edges used of those up to a transition; for phase 0 -> 1 of pulse 0 it becomes 1. */
+static int64_t used_edges(int64_t transitions, int32_t edges_per_pulse)
+{
+	switch (edges_per_pulse) {
+	case 1:
+		return (transitions + 3) >> 2;
+	case 2:
+		return (transitions + 1) >> 1;
+	default:
+		return transitions;
+	}
+}
+
+static int64_t true_edges(const struct lw_judge *judge)
+{
+	struct lw_plant_truth truth;
+
+	lw_plant_read_truth(&judge->world->plant, &truth);
+	return used_edges(truth.drum_transitions, judge->edges_per_pulse);
+}
+
+/** The used edge that lies between the pins before and now: +1, -1, or 0. */
+static int pins_edge(struct lw_judge *judge)
+{
+	const int before = judge->phase;
+	const int phase = pins_phase(judge->world);
+	const int moved = (phase - before) & 3;
+
+	judge->phase = phase;
+	if (moved == 2 || moved == 0) {
+		return 0; /* both channels at once say nothing about the direction */
+	}
+
+	const int dd = moved == 1 ? 1 : -1;
+	const int64_t from = 4 + before;
+
+	return (int)(used_edges(from + dd, judge->edges_per_pulse) -
+		     used_edges(from, judge->edges_per_pulse));
+}
+
+static void check_step(struct lw_judge *judge, enum lw_edge_source source, int step)
+{
+	struct lw_world *world = judge->world;
+	const int direction = judge->motor_reversed ? -step : step;
+	const int side = direction > 0 ? LW_PLUS : LW_MINUS;
+	/* A motor that is wired wrongly is stopped by the tick, or moves out when told to back off.
+	 */
+	const bool backing_off =
+		judge->state == LW_STATE_JOGGING || judge->state == LW_STATE_BACKING_OFF;
+	const uint64_t late_ns = !judge->motor_reversed ? 0 : backing_off ? UINT64_MAX : 2000000u;
+
+	judge->steps++;
+	if (step > 1 || step < -1) {
+		broken(judge, LW_INVARIANT_BURST, step, 1);
+	}
+	if (world->plant.pins.overtravel[side] &&
+	    world->now_ns - judge->overtravel_ns[side] >= late_ns) {
+		broken(judge, LW_INVARIANT_OVERTRAVEL, 1, 0);
+	}
+	if (judge->step == step && judge->step_source == source && judge->screw.ks > 0) {
+		/* A whole microstep lies between two steps the same way. */
+		const int64_t between = llabs(judge->source_edges[source] - judge->step_edges);
+		const int64_t least = LW_USTEP / judge->screw.ks;
+
+		if (between < least) {
+			broken(judge, LW_INVARIANT_BURST, (double)least - (double)between, 0);
+		}
+	}
+	judge->step = step;
+	judge->step_source = source;
+	judge->step_edges = judge->source_edges[source];
+}
+
+void lw_judge_edge(struct lw_judge *judge, enum lw_edge_source source, int step)
+{
+	const int edge = source == LW_EDGE_SOURCE_TIMER ? 1 : pins_edge(judge);
+
+	for (int side = 0; side < 2; side++) {
+		if (!judge->world->plant.pins.overtravel[side]) {
+			judge->overtravel_ns[side] = judge->world->now_ns;
+		}
+	}
+	judge->source_edges[source] += edge;
+	if (source == LW_EDGE_SOURCE_ENCODER) {
+		judge->edges += edge;
+		judge->verdict.pin_edges += edge != 0;
+		if (judge->following && edge != 0) {
+			turn(&judge->screw, edge);
+		}
+	}
+	if (step != 0) {
+		if (edge == 0) {
+			broken(judge, LW_INVARIANT_BURST, 1, 0);
+		}
+		check_step(judge, source, step);
+	}
+}
+
+/* ---- every millisecond ----------------------------------------------------------------------- */
+
+static bool resting(int32_t state)
+{
+	return state == LW_STATE_UNINDEXED || state == LW_STATE_READY ||
+	       state == LW_STATE_CENTRED || state == LW_STATE_OFF || state == LW_STATE_FAULT;
+}
+
+static bool flag(const struct lw_status *status, enum lw_flag bit)
+{
+	return status->flags >> bit & 1u;
+}
+
+static void check_odometer(struct lw_judge *judge, const struct lw_status *status)
+{
+	if (status->uptime_ms < judge->uptime_ms ||
+	    judge->edges_per_pulse != judge->world->device.active.encoder_edges_per_pulse) {
+		judge->edges_per_pulse = judge->world->device.active.encoder_edges_per_pulse;
+		judge->edges_base = judge->edges - status->net_edges;
+		judge->true_base = true_edges(judge) - status->net_edges;
+		if (status->uptime_ms < judge->uptime_ms && status->net_edges != 0) {
+			broken(judge, LW_INVARIANT_ODOMETER, (double)status->net_edges, 0);
+		}
+	}
+
+	const int64_t counted = judge->edges - judge->edges_base;
+	const int64_t hidden = llabs(counted - (true_edges(judge) - judge->true_base));
+	/* One pulse may be under way, and one dither. */
+	const int64_t may = judge->may_hide_edges + judge->edges_per_pulse + 1;
+
+	if (status->net_edges != counted) {
+		broken(judge, LW_INVARIANT_ODOMETER, (double)(status->net_edges - counted), 0);
+	}
+	if (hidden > may) {
+		broken(judge, LW_INVARIANT_ODOMETER, (double)hidden, (double)may);
+	}
+	if (hidden > judge->verdict.hidden_edges) {
+		judge->verdict.hidden_edges = hidden;
+	}
+}
+
+static void check_place(struct lw_judge *judge, const struct lw_status *status,
+			const struct lw_plant_truth *truth)
+{
+	const struct lw_params *active = &judge->world->device.active;
+	const double late_usteps =
+		LATE_S * (double)active->index_rate_edges_per_s * (double)status->ks / LW_USTEP;
+	const double place = (double)truth->commanded_usteps;
+	const double plus = active->flange_plus_um * USTEPS_PER_UM + late_usteps;
+	const double minus = active->flange_minus_um * USTEPS_PER_UM - late_usteps;
+
+	if (status->state == LW_STATE_SEEKING || status->state == LW_STATE_BACKING_OFF) {
+		judge->seeking_pole_slips = truth->pole_slips;
+	}
+	/* After a slip, and by a switch that lies, nobody knows where the steps lead. */
+	if (!flag(status, LW_FLAG_INDEXED) || truth->pole_slips != judge->seeking_pole_slips ||
+	    !judge->sound) {
+		return;
+	}
+	if (place > plus) {
+		broken(judge, LW_INVARIANT_FLANGE, place, plus);
+	} else if (place < minus) {
+		broken(judge, LW_INVARIANT_FLANGE, place, minus);
+	}
+}
+
+static void check_permit(struct lw_judge *judge, const struct lw_status *status,
+			 const struct lw_plant_truth *truth)
+{
+	const struct lw_params *active = &judge->world->device.active;
+	const struct lw_plant_pins *pins = &judge->world->plant.pins;
+	const bool indexed = flag(status, LW_FLAG_INDEXED);
+	const bool permit = flag(status, LW_FLAG_LAUNCH_PERMIT);
+	const double near_usteps = tolerance_usteps(judge);
+	const bool homing =
+		status->state == LW_STATE_SEEKING || status->state == LW_STATE_BACKING_OFF;
+
+	if ((judge->indexed && !indexed) || (homing && !judge->homing)) {
+		judge->visited[LW_PLUS] = false;
+		judge->visited[LW_MINUS] = false;
+	}
+	if (homing && !judge->homing) {
+		judge->sound = true;
+	}
+	judge->sound &= !judge->motor_reversed && !judge->switch_broken[LW_PLUS] &&
+			!judge->switch_broken[LW_MINUS];
+	judge->indexed = indexed;
+	judge->homing = homing;
+	judge->visited[LW_PLUS] |=
+		truth->carriage_usteps >= active->switch_plus_um * USTEPS_PER_UM - near_usteps;
+	judge->visited[LW_MINUS] |=
+		truth->carriage_usteps <= active->switch_minus_um * USTEPS_PER_UM + near_usteps;
+	if (permit && !(indexed && judge->visited[LW_PLUS] && judge->visited[LW_MINUS])) {
+		broken(judge, LW_INVARIANT_PERMIT, 1, 0);
+	}
+	if (permit && (pins->overtravel[LW_PLUS] || pins->overtravel[LW_MINUS] ||
+		       status->state != LW_STATE_TRACKING || status->fault != LW_FAULT_NONE ||
+		       flag(status, LW_FLAG_LOS))) {
+		broken(judge, LW_INVARIANT_PERMIT, 1, 0);
+	}
+	judge->permit = permit;
+	judge->verdict.permit_ms += permit;
+}
+
+static void check_pattern(struct lw_judge *judge, const struct lw_status *status)
+{
+	struct lw_judge_screw *screw = &judge->screw;
+
+	if (status->los_recoveries != judge->recoveries) {
+		judge->following = false; /* the carriage is brought into another phase */
+		if (!flag(status, LW_FLAG_LOS)) {
+			broken(judge, LW_INVARIANT_SILENT, status->los_recoveries, 0);
+		}
+	} else if (screw->begin != (int64_t)(status->reversal_minus_usteps + 1) * LW_USTEP ||
+		   screw->end != (int64_t)status->reversal_plus_usteps * LW_USTEP) {
+		anchor(judge, status); /* a trim has come into force */
+	} else if (screw->m != status->m || screw->u != status->u) {
+		broken(judge, LW_INVARIANT_PATTERN, status->m, (double)screw->m);
+		anchor(judge, status);
+	}
+}
+
+/** Is the rope laid where it belongs, and if not, is it told? */
+static void check_lay(struct lw_judge *judge, const struct lw_status *status,
+		      const struct lw_plant_truth *truth)
+{
+	const int64_t traverse = traverse_edges(&judge->screw) + slack_edges(judge);
+	const double tolerance = tolerance_usteps(judge);
+	const double error =
+		fabs(truth->carriage_usteps - (double)judge->screw.m / (double)LW_USTEP);
+
+	if (judge->permit && error > judge->verdict.error_usteps) {
+		judge->verdict.error_usteps = error;
+	}
+	if (error <= tolerance || flag(status, LW_FLAG_LOS)) {
+		judge->wrong.begun = false;
+		return;
+	}
+	if (!judge->wrong.begun) {
+		begin_range(&judge->wrong, judge->edges);
+	}
+
+	const int64_t silent = widen_range(&judge->wrong, judge->edges);
+
+	if (silent > judge->verdict.silent_edges) {
+		judge->verdict.silent_edges = silent;
+	}
+	if (silent > traverse) {
+		broken(judge, LW_INVARIANT_SILENT, (double)silent, (double)traverse);
+	}
+}
+
+/** Once told, is the lay made good within one sweep after the next reversal? */
+static void check_recovery(struct lw_judge *judge, const struct lw_status *status,
+			   const struct lw_plant_truth *truth)
+{
+	const double error = fabs(truth->carriage_usteps - (double)status->m / LW_USTEP);
+	const bool slipping = truth->pole_slips != judge->pole_slips;
+	const bool sound = error <= tolerance_usteps(judge);
+
+	judge->pole_slips = truth->pole_slips;
+	if (!flag(status, LW_FLAG_LOS) || slipping || !judge->sound) {
+		judge->recovering.begun = false;
+		return;
+	}
+	if (!judge->recovering.begun) {
+		begin_range(&judge->recovering, judge->edges);
+		judge->recovered = sound;
+	}
+
+	const int64_t way = widen_range(&judge->recovering, judge->edges);
+	/* Up to a traverse to the next reversal, which tells; then the sweep to the other switch.
+	 */
+	const int64_t limit = 2 * traverse_edges(&judge->screw) + slack_edges(judge);
+
+	if (!judge->recovered && sound && !flag(status, LW_FLAG_CORRECTION_PENDING)) {
+		judge->recovered = true;
+		if (way > judge->verdict.recovered_edges) {
+			judge->verdict.recovered_edges = way;
+		}
+	}
+	if (way > limit && !sound) {
+		broken(judge, LW_INVARIANT_RECOVERY, error, tolerance_usteps(judge));
+	}
+}
+
+static void check_alarm(struct lw_judge *judge, const struct lw_status *status,
+			const struct lw_plant_truth *truth)
+{
+	const double error = fabs(truth->carriage_usteps - (double)judge->screw.m / LW_USTEP);
+
+	if (!judge->harmless) {
+		return;
+	}
+	if (flag(status, LW_FLAG_LOS) || status->fault != LW_FAULT_NONE) {
+		broken(judge, LW_INVARIANT_FALSE_ALARM, status->fault, 0);
+	}
+	if (judge->following && error > tolerance_usteps(judge)) {
+		broken(judge, LW_INVARIANT_FALSE_ALARM, error, tolerance_usteps(judge));
+	}
+}
+
+void lw_judge_tick(struct lw_judge *judge)
+{
+	const uint32_t los = 1u << LW_FLAG_LOS1_PLUS | 1u << LW_FLAG_LOS1_MINUS |
+			     1u << LW_FLAG_LOS2_PLUS | 1u << LW_FLAG_LOS2_MINUS;
+	struct lw_verdict *verdict = &judge->verdict;
+	const struct lw_status *status = &judge->world->device.status_image;
+	struct lw_plant_truth truth;
+
+	lw_device_refresh_status(&judge->world->device);
+	lw_plant_read_truth(&judge->world->plant, &truth);
+	check_odometer(judge, status);
+	if (status->state != LW_STATE_TRACKING || status->uptime_ms < judge->uptime_ms) {
+		judge->following = false;
+		judge->wrong.begun = false;
+		judge->recovering.begun = false;
+	} else if (judge->state != LW_STATE_TRACKING) {
+		anchor(judge, status);
+	}
+	if (resting(status->state)) {
+		judge->step = 0;
+		if (resting(judge->state) && judge->steps != 0) {
+			broken(judge, LW_INVARIANT_UNASKED, judge->steps, 0);
+		}
+	}
+	judge->screw.ks = status->ks;
+	judge->steps = 0;
+	judge->state = status->state;
+	judge->uptime_ms = status->uptime_ms;
+
+	check_place(judge, status, &truth);
+	check_permit(judge, status, &truth);
+	if (judge->following) {
+		check_pattern(judge, status);
+	}
+	if (judge->following) {
+		check_lay(judge, status, &truth);
+	}
+	if (status->state == LW_STATE_TRACKING) {
+		check_recovery(judge, status, &truth);
+	}
+	check_alarm(judge, status, &truth);
+
+	verdict->tracking_ms += status->state == LW_STATE_TRACKING;
+	verdict->los_seen |= status->flags & los;
+	if (status->fault != LW_FAULT_NONE) {
+		verdict->fault = status->fault;
+	}
+	if (status->los_recoveries > verdict->recoveries) {
+		verdict->recoveries = status->los_recoveries;
+	}
+}
+
+void lw_judge_init(struct lw_judge *judge, struct lw_world *world)
+{
+	*judge = (struct lw_judge){
+		.world = world,
+		.verdict.broken = -1,
+		.phase = pins_phase(world),
+		.edges_per_pulse = world->device.active.encoder_edges_per_pulse,
+		.sound = true,
+	};
+	judge->true_base = true_edges(judge);
+}
+
+void lw_judge_end(struct lw_judge *judge)
+{
+	struct lw_plant_truth truth;
+
+	lw_plant_read_truth(&judge->world->plant, &truth);
+	lw_device_refresh_status(&judge->world->device);
+	judge->verdict.duration_ms = (uint32_t)(judge->world->now_ns / 1000000u);
+	judge->verdict.state = judge->world->device.status_image.state;
+	judge->verdict.flags = judge->world->device.status_image.flags;
+	judge->verdict.pole_slips = truth.pole_slips;
+}
