@@ -163,8 +163,16 @@ static int configure_line(const struct lw_line *line)
 }
 #endif
 
+/** Take tx_free. The longest answer takes more than two seconds at 1,200 baud. */
+static void wait_until_sent(int channel)
+{
+	while (k_sem_take(&tx_free, K_MSEC(CONFIG_LW_WATCHDOG_TIMEOUT_MS / 2)) != 0) {
+		task_wdt_feed(channel);
+	}
+}
+
 /** Make the UART as the device wants it, once nothing is being sent. */
-static void follow_line_settings(void)
+static void follow_line_settings(int channel)
 {
 	struct lw_line line;
 
@@ -174,7 +182,7 @@ static void follow_line_settings(void)
 	if (line.baud_rate == configured.baud_rate && line.format == configured.format) {
 		return;
 	}
-	(void)k_sem_take(&tx_free, K_FOREVER);
+	wait_until_sent(channel);
 	if (configure_line(&line) != 0) {
 		LOG_ERR("the UART refuses %u baud, format %d", line.baud_rate, (int)line.format);
 	}
@@ -182,24 +190,25 @@ static void follow_line_settings(void)
 	configured = line;
 }
 
-static void run(void *channel, void *unused1, void *unused2)
+static void run(void *watchdog_channel, void *unused1, void *unused2)
 {
+	const int channel = (int)(intptr_t)watchdog_channel;
 	uint8_t bytes[LW_RTU_FRAME_MAX + 1];
 	uint64_t last_byte_us;
 
 	ARG_UNUSED(unused1);
 	ARG_UNUSED(unused2);
 	for (;;) {
-		follow_line_settings();
+		follow_line_settings(channel);
 
 		const size_t count = wait_for_frame(bytes, &last_byte_us);
 		struct lw_slave *slave = &app_device.slave;
 
-		task_wdt_feed((int)(intptr_t)channel);
+		task_wdt_feed(channel);
 		if (count == 0) {
 			continue;
 		}
-		(void)k_sem_take(&tx_free, K_FOREVER);
+		wait_until_sent(channel);
 		k_mutex_lock(&app_lock, K_FOREVER);
 		lw_slave_receive(slave, bytes, count, last_byte_us);
 		tx.length = lw_slave_poll(slave, app_now_us(), tx.bytes);
