@@ -117,6 +117,29 @@ class Libmodbus:
         result = self.library.modbus_write_registers(self.context, address, len(words), values)
         self._check(result, len(words))
 
+    def report_server_id(self) -> bytes:
+        """FC17."""
+        answer = (ctypes.c_uint8 * 260)()
+        length = self.library.modbus_report_slave_id(self.context, len(answer), answer)
+        assert length > 0, ctypes.get_errno()
+        return bytes(answer[:length])
+
+    def mask_write(self, address: int, and_mask: int, or_mask: int) -> int:
+        """FC22."""
+        return self.library.modbus_mask_write_register(self.context, address, and_mask, or_mask)
+
+    def write_and_read(
+        self, address: int, words: list[int], read_address: int, count: int
+    ) -> list[int]:
+        """FC23."""
+        values = (ctypes.c_uint16 * len(words))(*words)
+        answer = (ctypes.c_uint16 * count)()
+        result = self.library.modbus_write_and_read_registers(
+            self.context, address, len(words), values, read_address, count, answer
+        )
+        self._check(result, count)
+        return list(answer)
+
     def close(self) -> None:
         self.library.modbus_close(self.context)
         self.library.modbus_free(self.context)

@@ -6,10 +6,19 @@ import subprocess
 from collections.abc import Iterator
 
 import pytest
-from levelwind.map_table import POINTS, Command, Reason, Result, State
+from levelwind.map_table import (
+    POINTS,
+    PRODUCT_CODE,
+    PRODUCT_VERSION,
+    VENDOR,
+    Command,
+    Reason,
+    Result,
+    State,
+)
 from levelwind.points import lookup, runs
-from masters import MASTERS, ExceptionAnswer, Master, Pymodbus
-from slave import TEST_DIR, Slave
+from masters import MASTERS, ExceptionAnswer, Libmodbus, Master, Pymodbus
+from slave import TEST_DIR, UNIT, Slave
 
 SPACES = ("coil", "discrete", "holding", "input")
 COPIES = ("active", "stored")
@@ -112,6 +121,44 @@ def test_bad_requests(slave: Slave, kind: type[Master]) -> None:
         assert read_point(master, "last_error_reason") == reason
         assert read_point(master, "last_error_exception") == exception
     assert read_point(master, "pitch_um") == 12_000
+    master.close()
+
+
+def test_pymodbus_and_the_other_functions(slave: Slave) -> None:
+    """What only some masters know, in the words of pymodbus."""
+    client = slave.client
+    address = POINTS["encoder_pulses_per_rev"].address
+    information = client.read_device_information(read_code=2, object_id=0, device_id=UNIT)
+    assert [text.decode() for text in information.information.values()][:3] == [
+        VENDOR,
+        PRODUCT_CODE,
+        PRODUCT_VERSION,
+    ]
+    assert information.conformity == 0x82
+    server = client.report_device_id(device_id=UNIT)
+    assert server.identifier.startswith(b"L\x00 " + VENDOR.encode())
+    assert client.diag_query_data(b"\xa5\x37", device_id=UNIT).message == b"\xa5\x37"
+    assert not client.diag_clear_counters(device_id=UNIT).isError()
+    assert client.diag_read_bus_message_count(device_id=UNIT).message == 1
+    answer = client.mask_write_register(
+        address=address, and_mask=0xFF00, or_mask=0x0042, device_id=UNIT
+    )
+    assert not answer.isError()
+    assert slave.read("encoder_pulses_per_rev") == 360 & 0xFF00 | 0x42
+    answer = client.readwrite_registers(
+        read_address=address, read_count=2, address=address, values=[500], device_id=UNIT
+    )
+    assert answer.registers == [500, 2]
+
+
+def test_libmodbus_and_the_other_functions(slave: Slave) -> None:
+    slave.close()
+    master = Libmodbus(slave.port)
+    address = POINTS["encoder_pulses_per_rev"].address
+    assert master.report_server_id()[:2] == b"L\x00"
+    assert master.mask_write(address, 0xFF00, 0x0042) == 1
+    assert master.read("holding", address, 1) == [360 & 0xFF00 | 0x42]
+    assert master.write_and_read(address, [500], address, 2) == [500, 2]
     master.close()
 
 
