@@ -2,6 +2,8 @@
 set(LW_CORE_SOURCES
   generated/map.c
   src/bank.c
+  src/cam.c
+  src/cam_table.c
   src/controller.c
   src/crc16.c
   src/device.c

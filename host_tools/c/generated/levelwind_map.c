@@ -194,6 +194,35 @@ static const struct levelwind_value reason_values[] = {
 	{65, "unknown_record", "The file has no record of this number"},
 	{66, "bad_reference_type", "The reference type of a group of file records must be 6"},
 	{67, "answer_too_long", "The answer would not fit into one frame: ask for fewer records"},
+	{70, "cam_too_few_rows", "A cam table needs at least two rows"},
+	{71, "cam_too_many_rows", "The cam table has more rows than fit"},
+	{72, "cam_first_master", "The first row of a cam table must have master 0"},
+	{
+		73, "cam_master_not_ascending",
+		"The master positions of a cam table must ascend from row to row",
+	},
+	{
+		74, "cam_row_too_short",
+		"The way from this cam row to the next is shorter than one encoder edge (in master units)",
+	},
+	{
+		75, "cam_row_too_large",
+		"The way from this cam row to the next is too long for exact arithmetic (in master units): put a row between",
+	},
+	{76, "cam_cycle_too_long", "The cycle of the cam table is too long (in master units)"},
+	{
+		77, "cam_slope",
+		"The way from this cam row to the next asks for too many steps per edge (in steps per 1000 edges, ramps included)",
+	},
+	{
+		78, "cam_step_rate",
+		"The way from this cam row to the next asks for too many steps per second at overspeed_trip_edges_per_s",
+	},
+	{
+		79, "cam_wrap",
+		"Last minus first slave of the cam table differs from the declared advance (0 if cyclic)",
+	},
+	{80, "cam_interpolation", "The cam table names an unknown interpolation"},
 };
 
 static const struct levelwind_value host_values[] = {
@@ -917,7 +946,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_reason", .unit = "", .text = "Why it was refused or failed",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 403,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_reason),
-		.values = reason_values, .value_count = 48,
+		.values = reason_values, .value_count = 59,
 	},
 	{
 		.name = "command_address", .unit = "",
@@ -940,7 +969,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Why the last refused request was refused", .block = LEVELWIND_BLOCK_STATUS,
 		.type = LEVELWIND_TYPE_U16, .address = 410, .words = 1,
 		.offset = offsetof(struct levelwind_status, last_error_reason),
-		.values = reason_values, .value_count = 48,
+		.values = reason_values, .value_count = 59,
 	},
 	{
 		.name = "last_error_function", .unit = "", .text = "Its function code",

@@ -260,6 +260,41 @@ enum levelwind_reason {
 	LEVELWIND_REASON_BAD_REFERENCE_TYPE = 66,
 	/** The answer would not fit into one frame: ask for fewer records */
 	LEVELWIND_REASON_ANSWER_TOO_LONG = 67,
+	/** A cam table needs at least two rows */
+	LEVELWIND_REASON_CAM_TOO_FEW_ROWS = 70,
+	/** The cam table has more rows than fit */
+	LEVELWIND_REASON_CAM_TOO_MANY_ROWS = 71,
+	/** The first row of a cam table must have master 0 */
+	LEVELWIND_REASON_CAM_FIRST_MASTER = 72,
+	/** The master positions of a cam table must ascend from row to row */
+	LEVELWIND_REASON_CAM_MASTER_NOT_ASCENDING = 73,
+	/**
+	 * The way from this cam row to the next is shorter than one encoder edge (in master units)
+	 */
+	LEVELWIND_REASON_CAM_ROW_TOO_SHORT = 74,
+	/**
+	 * The way from this cam row to the next is too long for exact arithmetic (in master units):
+	 * put a row between
+	 */
+	LEVELWIND_REASON_CAM_ROW_TOO_LARGE = 75,
+	/** The cycle of the cam table is too long (in master units) */
+	LEVELWIND_REASON_CAM_CYCLE_TOO_LONG = 76,
+	/**
+	 * The way from this cam row to the next asks for too many steps per edge (in steps per 1000
+	 * edges, ramps included)
+	 */
+	LEVELWIND_REASON_CAM_SLOPE = 77,
+	/**
+	 * The way from this cam row to the next asks for too many steps per second at
+	 * overspeed_trip_edges_per_s
+	 */
+	LEVELWIND_REASON_CAM_STEP_RATE = 78,
+	/**
+	 * Last minus first slave of the cam table differs from the declared advance (0 if cyclic)
+	 */
+	LEVELWIND_REASON_CAM_WRAP = 79,
+	/** The cam table names an unknown interpolation */
+	LEVELWIND_REASON_CAM_INTERPOLATION = 80,
 };
 
 /** What runs the core */

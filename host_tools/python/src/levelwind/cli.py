@@ -8,7 +8,16 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-from levelwind.commands import access, bench, conformance, field, offline, operate, parameters
+from levelwind.commands import (
+    access,
+    bench,
+    cam,
+    conformance,
+    field,
+    offline,
+    operate,
+    parameters,
+)
 from levelwind.errors import ToolError
 
 EXIT_INTERRUPTED = 130
@@ -81,6 +90,7 @@ for panel, commands in {
 }.items():
     for name, function in commands.items():
         app.command(name, rich_help_panel=panel)(function)
+app.add_typer(cam.app, name="cam", rich_help_panel="Without a controller")
 
 
 def _end(number: int, _: FrameType | None) -> None:

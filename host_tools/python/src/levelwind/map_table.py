@@ -303,6 +303,45 @@ class Reason(MapEnum):
         "answer_too_long",
         "The answer would not fit into one frame: ask for fewer records",
     )
+    CAM_TOO_FEW_ROWS = 70, "cam_too_few_rows", "A cam table needs at least two rows"
+    CAM_TOO_MANY_ROWS = 71, "cam_too_many_rows", "The cam table has more rows than fit"
+    CAM_FIRST_MASTER = 72, "cam_first_master", "The first row of a cam table must have master 0"
+    CAM_MASTER_NOT_ASCENDING = (
+        73,
+        "cam_master_not_ascending",
+        "The master positions of a cam table must ascend from row to row",
+    )
+    CAM_ROW_TOO_SHORT = (
+        74,
+        "cam_row_too_short",
+        "The way from this cam row to the next is shorter than one encoder edge (in master units)",
+    )
+    CAM_ROW_TOO_LARGE = (
+        75,
+        "cam_row_too_large",
+        "The way from this cam row to the next is too long for exact arithmetic (in master units): put a row between",
+    )
+    CAM_CYCLE_TOO_LONG = (
+        76,
+        "cam_cycle_too_long",
+        "The cycle of the cam table is too long (in master units)",
+    )
+    CAM_SLOPE = (
+        77,
+        "cam_slope",
+        "The way from this cam row to the next asks for too many steps per edge (in steps per 1000 edges, ramps included)",
+    )
+    CAM_STEP_RATE = (
+        78,
+        "cam_step_rate",
+        "The way from this cam row to the next asks for too many steps per second at overspeed_trip_edges_per_s",
+    )
+    CAM_WRAP = (
+        79,
+        "cam_wrap",
+        "Last minus first slave of the cam table differs from the declared advance (0 if cyclic)",
+    )
+    CAM_INTERPOLATION = 80, "cam_interpolation", "The cam table names an unknown interpolation"
 
 
 class Host(MapEnum):
@@ -415,6 +454,13 @@ class Event(MapEnum):
     FACTORY_STAGED = 44, "factory_staged", "Factory values were staged"
     LOCK_OPENED = 50, "lock_opened", "The write lock was opened"
     LOCK_CLOSED = 51, "lock_closed", "The write lock closed"
+
+
+class CamInterpolation(MapEnum):
+    """How a cam table goes from row to row."""
+
+    LINEAR = 0, "linear", "Straight, at one gear ratio"
+    TRAPEZOID = 1, "trapezoid", "At rest in every row: ramp up, plateau, ramp down"
 
 
 class BenchCommand(MapEnum):

@@ -232,17 +232,19 @@ def _reach(ka: int, nr: int) -> int:
     return ka * nr * (nr - 1) // 2 // USTEP + 1
 
 
-def plot_replay(trace: Sequence[int], stride: int, setup: Mapping[str, int], path: Path) -> None:
-    """Position over edges."""
+def plot_replay(
+    trace: Sequence[int], stride: int, title: str, lines: Sequence[int], path: Path
+) -> None:
+    """Position over edges, with horizontal lines."""
     from levelwind.plots import new_figure, save  # noqa: PLC0415
 
     figure = new_figure(11, 5)
     axes = figure.subplots()
     axes.plot([i * stride for i in range(len(trace))], trace)
-    for name in ("lplus_usteps", "lminus_usteps"):
-        axes.axhline(setup[name], color="tab:red", linestyle="--", linewidth=0.9)
+    for usteps in lines:
+        axes.axhline(usteps, color="tab:red", linestyle="--", linewidth=0.9)
     axes.set_xlabel("drum edges, forward and backward")
     axes.set_ylabel("carriage, microsteps")
-    axes.set_title(f"Ka {setup['ka']}, Nr {setup['nr']}")
+    axes.set_title(title)
     axes.grid(alpha=0.3)
     save(figure, path)

@@ -269,6 +269,41 @@ enum lw_reason {
 	LW_REASON_BAD_REFERENCE_TYPE = 66,
 	/** The answer would not fit into one frame: ask for fewer records */
 	LW_REASON_ANSWER_TOO_LONG = 67,
+	/** A cam table needs at least two rows */
+	LW_REASON_CAM_TOO_FEW_ROWS = 70,
+	/** The cam table has more rows than fit */
+	LW_REASON_CAM_TOO_MANY_ROWS = 71,
+	/** The first row of a cam table must have master 0 */
+	LW_REASON_CAM_FIRST_MASTER = 72,
+	/** The master positions of a cam table must ascend from row to row */
+	LW_REASON_CAM_MASTER_NOT_ASCENDING = 73,
+	/**
+	 * The way from this cam row to the next is shorter than one encoder edge (in master units)
+	 */
+	LW_REASON_CAM_ROW_TOO_SHORT = 74,
+	/**
+	 * The way from this cam row to the next is too long for exact arithmetic (in master units):
+	 * put a row between
+	 */
+	LW_REASON_CAM_ROW_TOO_LARGE = 75,
+	/** The cycle of the cam table is too long (in master units) */
+	LW_REASON_CAM_CYCLE_TOO_LONG = 76,
+	/**
+	 * The way from this cam row to the next asks for too many steps per edge (in steps per 1000
+	 * edges, ramps included)
+	 */
+	LW_REASON_CAM_SLOPE = 77,
+	/**
+	 * The way from this cam row to the next asks for too many steps per second at
+	 * overspeed_trip_edges_per_s
+	 */
+	LW_REASON_CAM_STEP_RATE = 78,
+	/**
+	 * Last minus first slave of the cam table differs from the declared advance (0 if cyclic)
+	 */
+	LW_REASON_CAM_WRAP = 79,
+	/** The cam table names an unknown interpolation */
+	LW_REASON_CAM_INTERPOLATION = 80,
 };
 
 /** What runs the core */
@@ -406,6 +441,14 @@ enum lw_event {
 	LW_EVENT_LOCK_OPENED = 50,
 	/** The write lock closed */
 	LW_EVENT_LOCK_CLOSED = 51,
+};
+
+/** How a cam table goes from row to row */
+enum lw_cam_interpolation {
+	/** Straight, at one gear ratio */
+	LW_CAM_INTERPOLATION_LINEAR = 0,
+	/** At rest in every row: ramp up, plateau, ramp down */
+	LW_CAM_INTERPOLATION_TRAPEZOID = 1,
 };
 
 /** Commands of the simulated plant */

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from levelwind import native, planning
+from levelwind.commands import cam
 from levelwind.connection import Json
 from levelwind.errors import ToolError
 from levelwind.output import print_json, print_table
@@ -93,28 +94,44 @@ def plan(
 
 
 def replay(
-    ka: Annotated[int, typer.Option(help="Slope change per edge in a reversal, Q16.16.")],
-    nr: Annotated[int, typer.Option(help="Edges from sweep slope to zero slope.")],
-    lplus: Annotated[int, typer.Option(help="L+, microsteps.")],
-    lminus: Annotated[int, typer.Option(help="L-, microsteps.")],
     drum: Annotated[
         str, typer.Option(help="Runs of drum edges, as +20000,-3000.", metavar="EDGES,...")
     ],
+    ka: Annotated[int | None, typer.Option(help="Slope change per edge, Q16.16.")] = None,
+    nr: Annotated[int | None, typer.Option(help="Edges from sweep slope to zero slope.")] = None,
+    lplus: Annotated[int | None, typer.Option(help="L+, microsteps.")] = None,
+    lminus: Annotated[int | None, typer.Option(help="L-, microsteps.")] = None,
     m: Annotated[int, typer.Option(help="Start position, Q16.16.")] = 0,
     u: Annotated[int | None, typer.Option(help="Start slope, Q16.16; default Ks.")] = None,
+    cam_file: Annotated[
+        Path | None, typer.Option("--cam", help="Follow this cam table instead of the law.")
+    ] = None,
+    interpolation: cam.Interpolation = "linear",
+    advancing: cam.Advancing = False,
+    master: cam.Master = "1/1",
+    slave: cam.Slave = "1/1",
+    ramp: cam.Ramp = 10,
     plot: Plot = None,
     json_output: Json = False,
 ) -> None:
-    """Run the compiled law over runs of forward and backward drum edges."""
+    """Run the compiled law, or a cam, over runs of forward and backward drum edges."""
     runs = planning.parse_runs(drum)
-    setup = planning.replay_setup(ka, nr, lplus, lminus, m, ka * nr if u is None else u)
-    result, trace, stride = native.replay(setup, runs, TRACE_POINTS if plot else 0)
+    points = TRACE_POINTS if plot else 0
+    if cam_file is not None:
+        table = cam.load(cam_file, interpolation, advancing)
+        document, trace, stride = cam.replay(table, cam.scale_of(master, slave, ramp), runs, points)
+        title, lines = table.name, ()
+    else:
+        if ka is None or nr is None or lplus is None or lminus is None:
+            raise ToolError("Give --ka, --nr, --lplus and --lminus for the law, or --cam FILE.")
+        setup = planning.replay_setup(ka, nr, lplus, lminus, m, ka * nr if u is None else u)
+        result, trace, stride = native.replay(setup, runs, points)
+        document, title, lines = asdict(result), f"Ka {ka}, Nr {nr}", (lplus, lminus)
     if plot is not None:
         if not trace:
             raise ToolError("There is nothing to draw: no edges.")
-        planning.plot_replay(trace, stride, setup, plot)
+        planning.plot_replay(trace, stride, title, lines, plot)
     if json_output:
-        print_json(asdict(result))
+        print_json(document)
     else:
-        rows = [(name, str(value)) for name, value in asdict(result).items()]
-        print_table(("", "value>"), rows)
+        print_table(("", "value>"), [(name, str(value)) for name, value in document.items()])

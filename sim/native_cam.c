@@ -1,0 +1,97 @@
+/*
+ * What Python calls by ctypes for cam tables: the compiled check, and the compiled cam over runs
+ * of edges.
+ */
+#include <stddef.h>
+#include <stdint.h>
+
+#include "lw/cam.h"
+
+/** What a replay of a cam ended with. */
+struct lw_native_cam_result {
+	int64_t pos;
+	int64_t min_pos;
+	int64_t max_pos;
+	int64_t pulses; /**< all */
+	int64_t edges;
+	int32_t row;      /**< index of the row that the cam ended in */
+	int32_t cycles;   /**< net */
+	int32_t step_max; /**< most steps of one edge */
+	uint64_t trace_count;
+};
+
+/** lw_cam_table_check() with the scale in lowest terms. */
+int lw_native_cam_check(const struct lw_cam_table *table, const struct lw_cam_scale *scale,
+			const struct lw_cam_limits *limits, struct lw_cam_statistics *statistics,
+			struct lw_cam_refusal *why)
+{
+	const struct lw_cam_scale lowest =
+		lw_cam_scale(scale->edges, scale->master_units, scale->usteps, scale->slave_units,
+			     scale->ramp_divisor);
+
+	return lw_cam_table_check(table, &lowest, limits, statistics, why);
+}
+
+/** Bytes of a cam, for the caller's memory. */
+size_t lw_native_cam_size(void)
+{
+	return sizeof(struct lw_cam);
+}
+
+/** Start a cam on a checked table, which must outlive it. */
+void lw_native_cam_start(struct lw_cam *cam, const struct lw_cam_table *table,
+			 const struct lw_cam_scale *scale, int64_t start_edges)
+{
+	const struct lw_cam_scale lowest =
+		lw_cam_scale(scale->edges, scale->master_units, scale->usteps, scale->slave_units,
+			     scale->ramp_divisor);
+
+	lw_cam_start(cam, table, &lowest, start_edges, 0);
+}
+
+/**
+ * Take runs of edges, as the encoder interrupt does.
+ *
+ * @param runs edges of each run, positive forward, negative backward
+ * @param next table to go on with from the next boundary of a cycle, or NULL
+ * @param trace_pos receives the position before every trace_stride-th edge
+ */
+void lw_native_cam_run(struct lw_cam *cam, const int32_t *runs, size_t run_count,
+		       const struct lw_cam_table *next, struct lw_native_cam_result *result,
+		       int64_t *trace_pos, size_t trace_stride, size_t trace_capacity)
+{
+	size_t until_trace = 0;
+
+	*result = (struct lw_native_cam_result){.min_pos = cam->pos_usteps,
+						.max_pos = cam->pos_usteps};
+	for (size_t run = 0; run < run_count; run++) {
+		const int dd = runs[run] < 0 ? -1 : 1;
+		const int64_t edges = runs[run] < 0 ? -(int64_t)runs[run] : runs[run];
+
+		for (int64_t i = 0; i < edges; i++) {
+			if (until_trace-- == 0 && result->trace_count < trace_capacity) {
+				trace_pos[result->trace_count++] = cam->pos_usteps;
+				until_trace = trace_stride - 1;
+			}
+
+			const int step = lw_cam_edge(cam, dd, next);
+			const int magnitude = step < 0 ? -step : step;
+
+			next = cam->table == next ? NULL : next;
+			result->edges++;
+			result->pulses += magnitude;
+			if (magnitude > result->step_max) {
+				result->step_max = magnitude;
+			}
+			if (cam->pos_usteps < result->min_pos) {
+				result->min_pos = cam->pos_usteps;
+			}
+			if (cam->pos_usteps > result->max_pos) {
+				result->max_pos = cam->pos_usteps;
+			}
+		}
+	}
+	result->pos = cam->pos_usteps;
+	result->row = cam->row;
+	result->cycles = cam->cycles;
+}
