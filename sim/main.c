@@ -7,14 +7,12 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <getopt.h>
-#include <libgen.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -46,6 +44,7 @@ struct options {
 struct simulator {
 	struct options options;
 	struct lw_port port;
+	int storage_fd;
 	FILE *trace;
 	int64_t traced_edges;
 	uint32_t traced_steps;
@@ -77,7 +76,7 @@ static void usage(FILE *stream)
 	      "terminal\n"
 	      "  --speed FACTOR   virtual seconds per real second (default 1), or max\n"
 	      "  --seed N         seed of everything random in the plant (default 1)\n"
-	      "  --storage FILE   where saved parameters are kept (default: in memory)\n"
+	      "  --storage FILE   keeps parameters, event log and counters (default: in memory)\n"
 	      "  --trace FILE     write one line per millisecond in which something moves\n"
 	      "  --unit N         Modbus unit id (default: the stored one, at first 1)\n"
 	      "  --carriage-um N  where the carriage stands at first (default 0)\n",
@@ -182,71 +181,31 @@ static bool parse_options(int argc, char **argv, struct options *options)
 	return true;
 }
 
-/** Make the name of a file durable: a rename is safe only once its folder is written. */
-static int sync_folder(const char *path)
+/** Where a slot stands in the storage file. */
+static off_t slot_offset(unsigned int slot)
 {
-	char copy[4096];
-	int folder;
-	int ret;
-
-	if (snprintf(copy, sizeof(copy), "%s", path) >= (int)sizeof(copy)) {
-		return -ENAMETOOLONG;
-	}
-	folder = open(dirname(copy), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-	if (folder < 0) {
-		return -errno;
-	}
-	ret = fsync(folder) ? -errno : 0;
-	close(folder);
-	return ret;
+	return (off_t)slot * LW_STORE_SLOT_SIZE;
 }
 
-/** Replace the stored record: a power cut leaves the old one or the new one. */
-static int store_record(void *context, const uint8_t *record, size_t length)
+/** Write one slot in place: a power cut may leave it torn, as in a flash. */
+static int write_slot(void *context, unsigned int slot, const uint8_t *bytes, size_t length)
 {
 	const struct simulator *simulator = context;
-	const char *path = simulator->options.storage;
-	char fresh[4096];
-	ssize_t written;
-	int fd;
-	int ret;
+	const int fd = simulator->storage_fd;
+	const ssize_t written = pwrite(fd, bytes, length, slot_offset(slot));
 
-	if (path == NULL) {
-		return 0;
-	}
-	if (snprintf(fresh, sizeof(fresh), "%s.new", path) >= (int)sizeof(fresh)) {
-		return -ENAMETOOLONG;
-	}
-	fd = open(fresh, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-	if (fd < 0) {
+	if (written < 0) {
 		return -errno;
 	}
-	written = write(fd, record, length);
-	ret = written < 0 ? -errno : (size_t)written != length ? -EIO : fsync(fd) ? -errno : 0;
-	if (close(fd) && ret == 0) {
-		ret = -errno;
-	}
-	if (ret == 0 && rename(fresh, path)) {
-		ret = -errno;
-	}
-	return ret ? ret : sync_folder(path);
+	return (size_t)written != length ? -EIO : fsync(fd) ? -errno : 0;
 }
 
-/** @return bytes read, 0 if there is no file, negative errno if it cannot be read */
-static ssize_t load_record(const char *path, uint8_t *record, size_t size)
+static size_t read_slot(void *context, unsigned int slot, uint8_t *bytes, size_t size)
 {
-	int fd = open(path, O_RDONLY | O_CLOEXEC);
-	ssize_t length;
+	const struct simulator *simulator = context;
+	const ssize_t length = pread(simulator->storage_fd, bytes, size, slot_offset(slot));
 
-	if (fd < 0) {
-		return errno == ENOENT ? 0 : -errno;
-	}
-	length = read(fd, record, size);
-	if (length < 0) {
-		length = -errno;
-	}
-	close(fd);
-	return length;
+	return length > 0 ? (size_t)length : 0;
 }
 
 static void trace(void *context)
@@ -378,27 +337,20 @@ int main(int argc, char **argv)
 {
 	static struct simulator simulator; /* large: off the stack */
 	const struct sigaction action = {.sa_handler = on_signal};
-	uint8_t record[LW_RECORD_SIZE + 1]; /* one more, so that a longer file is noticed */
 	struct lw_world_config config;
-	ssize_t record_length = 0;
 	int ret;
 
 	if (!parse_options(argc, argv, &simulator.options)) {
 		return 2;
 	}
 	if (simulator.options.storage != NULL) {
-		record_length = load_record(simulator.options.storage, record, sizeof(record));
-		if (record_length < 0) {
-			fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.storage,
-				strerror((int)-record_length));
+		simulator.storage_fd =
+			open(simulator.options.storage, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+		if (simulator.storage_fd < 0) {
+			fprintf(stderr, "lw_sim: --storage %s: %s\n", simulator.options.storage,
+				strerror(errno));
 			return EXIT_FAILURE;
 		}
-	}
-	ret = simulator.options.storage != NULL ? sync_folder(simulator.options.storage) : 0;
-	if (ret) {
-		fprintf(stderr, "lw_sim: --storage %s: its folder: %s\n", simulator.options.storage,
-			strerror(-ret));
-		return EXIT_FAILURE;
 	}
 	if (simulator.options.trace != NULL) {
 		simulator.trace = fopen(simulator.options.trace, "w");
@@ -417,10 +369,9 @@ int main(int argc, char **argv)
 		.carriage_um = simulator.options.carriage_um,
 		.silence_us = lw_port_is_serial(simulator.options.port) ? 0 : PTY_SILENCE_US,
 		.unit_id = simulator.options.unit_id,
-		.record = record_length > 0 ? record : NULL,
-		.record_length = (size_t)record_length,
 		.context = &simulator,
-		.store = store_record,
+		.read_slot = simulator.options.storage != NULL ? read_slot : NULL,
+		.write_slot = simulator.options.storage != NULL ? write_slot : NULL,
 		.observe = trace,
 	};
 	if (lw_world_init(&simulator.world, &config, real_ns() / 1000)) {

@@ -12,6 +12,23 @@ static uint64_t controller_us(const struct lw_world *world)
 	return (world->now_ns - world->power_up_ns) / NS_PER_US;
 }
 
+static void load(struct lw_world *world)
+{
+	uint8_t bytes[LW_STORE_SLOT_SIZE];
+
+	lw_store_init(&world->store);
+	for (unsigned int slot = 0; slot < LW_STORE_SLOTS; slot++) {
+		if (world->config.read_slot != NULL) {
+			lw_store_load(&world->store, slot, bytes,
+				      world->config.read_slot(world->config.context, slot, bytes,
+							      sizeof(bytes)));
+		} else {
+			lw_store_load(&world->store, slot, world->memory[slot],
+				      sizeof(world->memory[slot]));
+		}
+	}
+}
+
 static void power_up(struct lw_world *world, uint64_t slave_now_us)
 {
 	const struct lw_plant_pins *pins = &world->plant.pins;
@@ -23,8 +40,9 @@ static void power_up(struct lw_world *world, uint64_t slave_now_us)
 		inputs.overtravel[side] = pins->overtravel[side];
 	}
 	world->power_up_ns = world->now_ns;
-	lw_device_init(&world->device, &world->device_config, world->storage, world->storage_length,
-		       &inputs, controller_us(world), slave_now_us);
+	load(world);
+	lw_device_init(&world->device, &world->device_config, &inputs, controller_us(world),
+		       slave_now_us);
 	/* Without a controller there is no current; the first tick switches it on. */
 	lw_plant_enable(&world->plant, false);
 	world->stepper_enabled = false;
@@ -46,14 +64,11 @@ int lw_world_init(struct lw_world *world, const struct lw_world_config *config,
 	if (ret) {
 		return ret;
 	}
-	if (config->record != NULL && config->record_length <= sizeof(world->storage)) {
-		memcpy(world->storage, config->record, config->record_length);
-		world->storage_length = config->record_length;
-	}
 	lw_plant_bench_init(&world->bench, &world->plant);
 	world->bench_section = lw_plant_bench_section(&world->bench);
 	world->device_config = (struct lw_device_config){
 		.host = LW_HOST_SIMULATOR,
+		.store = &world->store,
 		.host_section = &world->bench_section,
 		.silence_us = config->silence_us,
 		.unit_id = config->unit_id,
@@ -62,22 +77,23 @@ int lw_world_init(struct lw_world *world, const struct lw_world_config *config,
 	return 0;
 }
 
-static void save(struct lw_world *world)
+/** Do the write to the storage that is due. */
+static void serve_storage(struct lw_world *world)
 {
-	const uint8_t *record = lw_device_pending_record(&world->device);
+	uint8_t bytes[LW_STORE_SLOT_SIZE];
+	unsigned int slot;
+	const size_t length = lw_device_begin_write(&world->device, &slot, bytes);
 	int ret = 0;
 
-	if (record == NULL) {
+	if (length == 0) {
 		return;
 	}
-	if (world->config.store != NULL) {
-		ret = world->config.store(world->config.context, record, LW_RECORD_SIZE);
+	if (world->config.write_slot != NULL) {
+		ret = world->config.write_slot(world->config.context, slot, bytes, length);
+	} else {
+		memcpy(world->memory[slot], bytes, length);
 	}
-	if (ret == 0) {
-		memcpy(world->storage, record, LW_RECORD_SIZE);
-		world->storage_length = LW_RECORD_SIZE;
-	}
-	lw_device_record_written(&world->device, ret);
+	lw_device_end_write(&world->device, ret);
 }
 
 /** Do what the controller asks for outside of its interrupts. */
@@ -108,7 +124,7 @@ static void tick(struct lw_world *world)
 		power_up(world, world->device.slave.last_request_us);
 	}
 	lw_device_tick(&world->device, controller_us(world));
-	save(world);
+	serve_storage(world);
 	serve_outputs(world);
 	if (world->config.observe != NULL) {
 		world->config.observe(world->config.context);

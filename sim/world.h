@@ -19,15 +19,17 @@
 /** How a world starts. */
 struct lw_world_config {
 	uint64_t seed;
-	int32_t carriage_um;   /**< where the carriage stands at power-up */
-	uint32_t silence_us;   /**< see struct lw_device_config */
-	uint8_t unit_id;       /**< see struct lw_device_config */
-	const uint8_t *record; /**< what the storage holds, or NULL */
-	size_t record_length;
-	void *context; /**< handed to the functions below */
-	/** Write a record to the storage: 0 or a negative errno. NULL: it is kept in memory only.
+	int32_t carriage_um; /**< where the carriage stands at power-up */
+	uint32_t silence_us; /**< see struct lw_device_config */
+	uint8_t unit_id;     /**< see struct lw_device_config */
+	void *context;       /**< handed to the functions below */
+	/**
+	 * Read a slot of the storage: bytes, 0 for none. NULL: the storage is in memory, at first
+	 * empty.
 	 */
-	int (*store)(void *context, const uint8_t *record, size_t length);
+	size_t (*read_slot)(void *context, unsigned int slot, uint8_t *bytes, size_t size);
+	/** Write a slot of the storage: 0 or a negative errno. NULL where `read_slot` is. */
+	int (*write_slot)(void *context, unsigned int slot, const uint8_t *bytes, size_t length);
 	/** Called after every tick, once per millisecond of virtual time. May be NULL. */
 	void (*observe)(void *context);
 	/** Called after every transition of the encoder and every edge of the edge timer, with the
@@ -51,8 +53,8 @@ struct lw_world {
 	uint32_t timer_rate_edges_per_s;
 	bool stepper_enabled;
 	bool was_indexed;
-	uint8_t storage[LW_RECORD_SIZE];
-	size_t storage_length;
+	struct lw_store store;
+	uint8_t memory[LW_STORE_SLOTS][LW_STORE_SLOT_SIZE]; /**< the storage if it is in memory */
 };
 
 /**

@@ -24,7 +24,10 @@ K_MUTEX_DEFINE(app_lock);
 static const struct gpio_dt_spec default_settings =
 	GPIO_DT_SPEC_GET_OR(APP_NODE, default_settings_gpios, {0});
 
+static struct lw_store store;
+
 static struct lw_device_config config = {
+	.store = &store,
 	.host = (enum lw_host)CONFIG_LW_HOST,
 	.silence_us = CONFIG_LW_MODBUS_SILENCE_US,
 };
@@ -51,17 +54,15 @@ static int read_default_settings(bool *wanted)
 /** Bring the controller up from what is stored, with no interrupt in between. */
 static int power_up(void)
 {
-	uint8_t record[LW_RECORD_SIZE];
-	const size_t length = storage_load(record, sizeof(record));
 	struct lw_inputs inputs;
 	unsigned int key;
 	int ret;
 
+	storage_load(&store);
 	key = irq_lock();
 	ret = machine_read(&inputs);
 	if (ret == 0) {
-		lw_device_init(&app_device, &config, length > 0 ? record : NULL, length, &inputs,
-			       app_now_us(), app_now_us());
+		lw_device_init(&app_device, &config, &inputs, app_now_us(), app_now_us());
 	}
 	irq_unlock(key);
 	return ret;

@@ -7,32 +7,34 @@
 #include "app.h"
 
 #define TREE "levelwind"
-#define KEY  "parameters"
 
-/** Where storage_load() wants the record. */
-struct destination {
-	uint8_t *record;
-	size_t size;
-	size_t length;
+/** Names of the settings, by slot. The first is as old as the firmware. */
+static const char *const names[LW_STORE_SLOTS] = {
+	TREE "/parameters",
+	TREE "/parameters_b",
+	TREE "/journal",
+	TREE "/journal_b",
 };
 
 static K_THREAD_STACK_DEFINE(stack, 2048);
 static struct k_work_q queue;
-static uint8_t record[LW_RECORD_SIZE]; /**< owned by the work while `writing` */
-static bool writing;                   /**< under app_lock */
+static uint8_t bytes[LW_STORE_SLOT_SIZE]; /**< owned by the work while `writing` */
+static size_t length;                     /**< likewise */
+static unsigned int slot;                 /**< likewise */
+static bool writing;                      /**< under app_lock */
 
-static void write_record(struct k_work *work)
+static void write_slot(struct k_work *work)
 {
-	const int ret = settings_save_one(TREE "/" KEY, record, sizeof(record));
+	const int ret = settings_save_one(names[slot], bytes, length);
 
 	ARG_UNUSED(work);
 	k_mutex_lock(&app_lock, K_FOREVER);
 	writing = false;
-	lw_device_record_written(&app_device, ret);
+	lw_device_end_write(&app_device, ret);
 	k_mutex_unlock(&app_lock);
 }
 
-static K_WORK_DEFINE(write_work, write_record);
+static K_WORK_DEFINE(write_work, write_slot);
 
 int storage_start(void)
 {
@@ -43,36 +45,36 @@ int storage_start(void)
 	return settings_subsys_init();
 }
 
-static int load_one(const char *key, size_t length, settings_read_cb read, void *context,
-		    void *param)
+static int load_one(const char *key, size_t size, settings_read_cb read, void *context, void *param)
 {
-	struct destination *destination = param;
+	for (unsigned int i = 0; i < LW_STORE_SLOTS; i++) {
+		if (strcmp(key, names[i] + sizeof(TREE)) == 0) {
+			const ssize_t count = read(context, bytes, MIN(size, sizeof(bytes)));
 
-	if (strcmp(key, KEY) == 0 && length <= destination->size) {
-		const ssize_t count = read(context, destination->record, length);
-
-		destination->length = count > 0 ? (size_t)count : 0;
+			lw_store_load(param, i, bytes, count > 0 ? (size_t)count : 0);
+		}
 	}
 	return 0;
 }
 
-size_t storage_load(uint8_t *destination_record, size_t size)
+void storage_load(struct lw_store *store)
 {
-	struct destination destination = {.record = destination_record, .size = size};
-
-	/* What cannot be read is as good as not there: the device starts with factory values. */
-	(void)settings_load_subtree_direct(TREE, load_one, &destination);
-	return destination.length;
+	lw_store_init(store);
+	/*
+	 * What cannot be read is as good as not there: the device starts with factory values. The
+	 * buffer is free: the settings let nobody in while they are being saved.
+	 */
+	(void)settings_load_subtree_direct(TREE, load_one, store);
 }
 
 void storage_serve(void)
 {
-	const uint8_t *pending = lw_device_pending_record(&app_device);
-
-	if (pending == NULL || writing) {
+	if (writing) {
 		return;
 	}
-	memcpy(record, pending, sizeof(record));
-	writing = true;
-	k_work_submit_to_queue(&queue, &write_work);
+	length = lw_device_begin_write(&app_device, &slot, bytes);
+	if (length > 0) {
+		writing = true;
+		k_work_submit_to_queue(&queue, &write_work);
+	}
 }

@@ -1,13 +1,12 @@
 /**
  * @file
- * The stored parameters: one record of the core (lw/record.h) in Zephyr's settings. NVS writes it
- * as a whole: a power cut leaves the old record or the new one.
+ * The storage: the slots of the core (lw/store.h) in Zephyr's settings, one value each. They are
+ * written by a work queue of their own, the least urgent thread.
  */
 #ifndef STORAGE_H
 #define STORAGE_H
 
-#include <stddef.h>
-#include <stdint.h>
+#include "lw/store.h"
 
 /**
  * Start the storage. Not for interrupt context.
@@ -17,17 +16,12 @@
  */
 int storage_start(void);
 
-/**
- * Load the stored record.
- *
- * @param record receives it
- * @return its bytes; 0 if there is none, or if it is longer than `size`
- */
-size_t storage_load(uint8_t *record, size_t size);
+/** Fill the store with what the slots hold. Not for interrupt context. */
+void storage_load(struct lw_store *store);
 
 /**
- * Write the record that app_device has pending, if any, in the background. Called by the supervisor
- * with app_lock held.
+ * Do the write that app_device has due, if any, in the background. Called by the supervisor with
+ * app_lock held.
  */
 void storage_serve(void);
 

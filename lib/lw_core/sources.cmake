@@ -8,6 +8,7 @@ set(LW_CORE_SOURCES
   src/crc16.c
   src/device.c
   src/device_bank.c
+  src/device_events.c
   src/device_line.c
   src/device_status.c
   src/homing.c
@@ -17,6 +18,7 @@ set(LW_CORE_SOURCES
   src/log.c
   src/motion.c
   src/move.c
+  src/param_record.c
   src/params.c
   src/pdu.c
   src/pdu_data.c
@@ -26,6 +28,7 @@ set(LW_CORE_SOURCES
   src/record.c
   src/rtu.c
   src/slave.c
+  src/store.c
   src/tracking.c
 )
 list(TRANSFORM LW_CORE_SOURCES PREPEND ${CMAKE_CURRENT_LIST_DIR}/)

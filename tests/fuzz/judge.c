@@ -66,6 +66,7 @@ void judge_run_ms(struct judge *judge, uint32_t duration_ms)
 static void remember(struct judge *judge)
 {
 	judge->device = judge->world.device;
+	judge->store = judge->world.store;
 	judge->plant = judge->world.plant;
 	judge->power_cut = judge->world.bench.power_cut;
 	judge->profile_count = judge->world.bench.profile_count;
@@ -110,6 +111,8 @@ static void require_unchanged(const struct judge *judge, const uint8_t *bytes, s
 
 	judge_require(memcmp(&judge->device, &world->device, sizeof(world->device)) == 0,
 		      "the controller has changed", bytes, count);
+	judge_require(memcmp(&judge->store, &world->store, sizeof(world->store)) == 0,
+		      "the storage has changed", bytes, count);
 	judge_require(memcmp(&judge->plant, &world->plant, sizeof(world->plant)) == 0 &&
 			      judge->power_cut == world->bench.power_cut &&
 			      judge->profile_count == world->bench.profile_count,

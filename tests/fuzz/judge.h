@@ -30,6 +30,7 @@ struct judge {
 
 	/* What must not have changed. */
 	struct lw_device device;
+	struct lw_store store;
 	struct lw_plant plant;
 	bool power_cut;
 	size_t profile_count;

@@ -1,11 +1,13 @@
 """Staged parameters, APPLY, REVERT, SAVE, FACTORY, and what survives a restart."""
 
 import signal
+import struct
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from levelwind.map_table import POINTS, Command, Flag, Reason, Result, State
+from levelwind.map_table import POINTS, Command, Flag, Reason, Result, SlotState, State
 from slave import Simulator, Slave
 
 PARAMETERS = [point for point in POINTS.values() if point.block == "parameters"]
@@ -115,17 +117,68 @@ def test_save_survives_a_kill(
     assert second.stop() == 0
 
 
-def test_save_that_fails_says_so(
-    target: str, own_simulator: Callable[..., Simulator], tmp_path: Path
-) -> None:
+def test_save_that_fails_says_so(target: str, own_simulator: Callable[..., Simulator]) -> None:
     if target != "sim":
-        pytest.skip("only the simulator's storage can be made to fail: its folder vanishes")
-    folder = tmp_path / "storage"
-    folder.mkdir()
-    running = own_simulator(folder / "parameters.bin")
-    folder.rmdir()
+        pytest.skip("only the simulator's storage can be made to fail: a full device")
+    running = own_simulator(Path("/dev/full"))
     slave = Slave(str(running.port))
     assert slave.command(Command.SAVE) == Result.FAILED
     assert slave.read("command_reason") == Reason.STORAGE_FAILED
+    assert slave.read("slot_0") == SlotState.DAMAGED
+    slave.close()
+    assert running.stop() == 0
+
+
+def test_damaged_records_leave_the_older_set_then_the_factory_values(
+    target: str, own_simulator: Callable[..., Simulator], tmp_path: Path
+) -> None:
+    if target != "sim":
+        pytest.skip("only the simulator's storage is a plain file")
+    storage = tmp_path / "parameters.bin"
+    running = own_simulator(storage)
+    slave = Slave(str(running.port))
+    for pitch_um in (11_000, 10_000):
+        slave.write("pitch_um", pitch_um)
+        assert slave.command(Command.APPLY) == Result.DONE
+        assert slave.command(Command.SAVE) == Result.DONE
+    for damaged_um, left_um in ((10_000, 11_000), (11_000, 12_000)):
+        slave.close()
+        running.stop(signal.SIGKILL)
+        raw = bytearray(storage.read_bytes())
+        entry = struct.pack(">Hi", POINTS["pitch_um"].address, damaged_um)
+        raw[raw.index(entry) + 5] ^= 1
+        storage.write_bytes(raw)
+        running = own_simulator(storage)
+        slave = Slave(str(running.port))
+        assert slave.read("pitch_um", 1000) == left_um
+        assert slave.flag(Flag.DEFAULTS_LOADED) == (left_um == 12_000)
+        assert slave.read("slot_1") == SlotState.DAMAGED
+    assert slave.read("slot_0") == SlotState.DAMAGED
+    slave.close()
+    assert running.stop() == 0
+
+
+def test_a_record_of_schema_1_is_converted_and_kept_until_the_second_save(
+    target: str, own_simulator: Callable[..., Simulator], tmp_path: Path
+) -> None:
+    if target != "sim":
+        pytest.skip("only the simulator's storage is a plain file")
+    points = [point for point in PARAMETERS if point.address <= 183]  # those of that time
+    values = [point.default + (point.name == "rope_per_drum_rev_um") for point in points]
+    old = struct.pack(f"<4sHH{len(points)}i", b"LWPS", 1, len(points), *values)
+    old += struct.pack("<I", zlib.crc32(old))
+    storage = tmp_path / "parameters.bin"
+    storage.write_bytes(old)
+    running = own_simulator(storage)
+    slave = Slave(str(running.port))
+    assert slave.read("rope_per_drum_rev_um", 2000) == 2_400_001
+    assert slave.read("slot_0") == SlotState.OLDER
+    assert slave.read("record_schema") == 1
+    assert not slave.flag(Flag.DEFAULTS_LOADED)
+    assert slave.command(Command.SAVE) == Result.DONE
+    assert slave.read("record_schema") == 2
+    assert storage.read_bytes().startswith(old)
+    assert slave.command(Command.SAVE) == Result.DONE
+    assert not storage.read_bytes().startswith(old)
     slave.close()
     assert running.stop() == 0

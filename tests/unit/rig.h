@@ -28,6 +28,7 @@ struct rig {
 	struct lw_derived derived;
 	struct lw_controller own;
 	struct lw_device device;
+	struct lw_store store;            /**< of the device */
 	struct lw_controller *controller; /**< `own`, or that of `device` */
 	bool with_device;
 
@@ -226,6 +227,7 @@ static inline void rig_prepare(int32_t carriage_usteps)
 		.hysteresis_usteps = 50,
 		.now_us = 5000000,
 	};
+	lw_store_init(&rig.store);
 }
 
 /** Power up a controller with rig.params; wait until the drum counts as resting. */
@@ -269,6 +271,19 @@ static inline void rig_follow_to(int32_t usteps, int carriage_direction, int dru
 		}
 	}
 	TEST_FAIL_MESSAGE("the carriage never came there");
+}
+
+/** Do the write to the storage that is due. @return its slot, or -1 if there is none */
+static inline int rig_write_slot(int result)
+{
+	uint8_t bytes[LW_STORE_SLOT_SIZE];
+	unsigned int slot;
+
+	if (lw_device_begin_write(&rig.device, &slot, bytes) == 0) {
+		return -1;
+	}
+	lw_device_end_write(&rig.device, result);
+	return (int)slot;
 }
 
 /** Let the drum come to rest, and be seen so. */

@@ -5,20 +5,7 @@
 #include <unity.h>
 
 #include "lw/crc16.h"
-#include "rig.h"
-
-static struct lw_refusal why;
-static const struct lw_device_config config = {.host = LW_HOST_SIMULATOR};
-
-static void power_up(const uint8_t *record, size_t length)
-{
-	const struct lw_inputs inputs = rig_inputs();
-
-	lw_device_init(&rig.device, &config, record, length, &inputs, rig.now_us, rig.now_us);
-	rig.controller = &rig.device.controller;
-	rig.with_device = true;
-	rig_ticks(300);
-}
+#include "device_rig.h"
 
 void setUp(void)
 {
@@ -28,90 +15,6 @@ void setUp(void)
 
 void tearDown(void)
 {
-}
-
-static const struct lw_status *status(void)
-{
-	lw_device_refresh_status(&rig.device);
-	return &rig.device.status_image;
-}
-
-static bool flag(enum lw_flag bit)
-{
-	return status()->flags >> bit & 1;
-}
-
-static int write_register(uint16_t address, int32_t value)
-{
-	const uint8_t in[2] = {(uint8_t)((uint32_t)value >> 8), (uint8_t)value};
-
-	return lw_bank_write_registers(&rig.device.bank, address, 1, in, &why);
-}
-
-static int write_pair(uint16_t address, int32_t value)
-{
-	const uint8_t in[4] = {(uint8_t)((uint32_t)value >> 24), (uint8_t)((uint32_t)value >> 16),
-			       (uint8_t)((uint32_t)value >> 8), (uint8_t)value};
-
-	return lw_bank_write_registers(&rig.device.bank, address, 2, in, &why);
-}
-
-static int32_t read_register(enum lw_space space, uint16_t address)
-{
-	uint8_t out[2];
-
-	TEST_ASSERT_EQUAL_INT(
-		0, lw_bank_read_registers(&rig.device.bank, space, address, 1, out, &why));
-	return out[0] << 8 | out[1];
-}
-
-static int write_coil(uint16_t address, bool on)
-{
-	const uint8_t in = on;
-
-	return lw_bank_write_bits(&rig.device.bank, address, 1, &in, &why);
-}
-
-static bool read_bit(enum lw_space space, uint16_t address)
-{
-	uint8_t out;
-
-	TEST_ASSERT_EQUAL_INT(0,
-			      lw_bank_read_bits(&rig.device.bank, space, address, 1, &out, &why));
-	return out & 1;
-}
-
-static void assert_command(enum lw_command code, enum lw_result result, enum lw_reason reason)
-{
-	TEST_ASSERT_EQUAL_INT32(code, status()->command_code);
-	TEST_ASSERT_EQUAL_INT32(result, status()->command_result);
-	TEST_ASSERT_EQUAL_INT32(reason, status()->command_reason);
-}
-
-/** Give a command by its register; it is accepted and counted. */
-static void command(enum lw_command code)
-{
-	const int32_t sequence = status()->command_sequence;
-
-	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_COMMAND, (int32_t)code));
-	TEST_ASSERT_EQUAL_INT32(sequence + 1, status()->command_sequence);
-	TEST_ASSERT_EQUAL_INT32(code, read_register(LW_SPACE_HOLDING, LW_ADDRESS_COMMAND));
-}
-
-static void assert_command_refused(enum lw_command code, enum lw_reason reason)
-{
-	const int32_t sequence = status()->command_sequence;
-
-	TEST_ASSERT_EQUAL_INT(-EBUSY, write_register(LW_ADDRESS_COMMAND, (int32_t)code));
-	TEST_ASSERT_EQUAL_UINT16(reason, why.reason);
-	TEST_ASSERT_EQUAL_INT32(sequence + 1, status()->command_sequence);
-	assert_command(code, LW_RESULT_REFUSED, reason);
-}
-
-static void track(void)
-{
-	command(LW_COMMAND_INDEX);
-	rig_run_to(LW_STATE_TRACKING);
 }
 
 static void test_power_up_without_a_record(void)
@@ -129,34 +32,6 @@ static void test_power_up_without_a_record(void)
 	TEST_ASSERT_EQUAL_INT32(-8000, status()->reversal_minus_usteps);
 }
 
-static void test_power_up_with_a_record(void)
-{
-	struct lw_params params = lw_params_default;
-	uint8_t record[LW_RECORD_SIZE];
-
-	params.unit_id = 17;
-	params.overshoot_um = 1000;
-	lw_record_encode(&params, record);
-	power_up(record, sizeof(record));
-	TEST_ASSERT_FALSE(flag(LW_FLAG_DEFAULTS_LOADED));
-	TEST_ASSERT_EQUAL_MEMORY(&params, &rig.device.active, sizeof(params));
-	TEST_ASSERT_EQUAL_MEMORY(&params, &rig.device.staged, sizeof(params));
-	TEST_ASSERT_EQUAL_MEMORY(&params, &rig.device.stored, sizeof(params));
-	TEST_ASSERT_EQUAL_UINT8(17, rig.device.slave_config.unit_id);
-
-	/* Damaged, and in itself contradictory: factory values. */
-	record[50] ^= 1;
-	power_up(record, sizeof(record));
-	TEST_ASSERT_TRUE(flag(LW_FLAG_DEFAULTS_LOADED));
-	TEST_ASSERT_EQUAL_MEMORY(&lw_params_default, &rig.device.active, sizeof(params));
-	params.flange_plus_um = 0;
-	lw_record_encode(&params, record);
-	power_up(record, sizeof(record));
-	TEST_ASSERT_TRUE(flag(LW_FLAG_DEFAULTS_LOADED));
-	TEST_ASSERT_EQUAL_MEMORY(&lw_params_default, &rig.device.active, sizeof(params));
-	TEST_ASSERT_EQUAL_INT32(23, status()->ka);
-}
-
 static void test_the_host_can_override_line_settings_and_add_registers(void)
 {
 	static const struct lw_point point = {.address = 61440, .count = 1, .type = LW_TYPE_U16};
@@ -169,10 +44,15 @@ static void test_the_host_can_override_line_settings_and_add_registers(void)
 		.image = rig.device.sections[5].image, /* hands out its context */
 	};
 	const struct lw_device_config other = {
-		.host = LW_HOST_QEMU, .host_section = &section, .silence_us = 16000, .unit_id = 9};
+		.host = LW_HOST_QEMU,
+		.store = &rig.store,
+		.host_section = &section,
+		.silence_us = 16000,
+		.unit_id = 9,
+	};
 	const struct lw_inputs inputs = rig_inputs();
 
-	lw_device_init(&rig.device, &other, NULL, 0, &inputs, 0, 0);
+	lw_device_init(&rig.device, &other, &inputs, 0, 0);
 	TEST_ASSERT_EQUAL_INT32(77, read_register(LW_SPACE_HOLDING, 61440));
 	TEST_ASSERT_EQUAL_UINT8(9, rig.device.slave_config.unit_id);
 	TEST_ASSERT_EQUAL_UINT32(16000, rig.device.slave_config.rtu.silence_us);
@@ -180,18 +60,20 @@ static void test_the_host_can_override_line_settings_and_add_registers(void)
 
 static void test_default_line_settings_do_not_touch_the_stored_ones(void)
 {
-	const struct lw_device_config other = {.host = LW_HOST_SIMULATOR, .default_line = true};
+	const struct lw_device_config other = {
+		.host = LW_HOST_SIMULATOR, .store = &rig.store, .default_line = true};
 	const struct lw_inputs inputs = rig_inputs();
 	struct lw_params saved = lw_params_default;
-	uint8_t record[LW_RECORD_SIZE];
+	uint8_t record[LW_PARAM_RECORD_SIZE];
 
 	saved.unit_id = 7;
-	lw_record_encode(&saved, record);
-	lw_device_init(&rig.device, &other, record, sizeof(record), &inputs, 0, 0);
+	(void)lw_param_record_encode(&saved, 1, record);
+	lw_store_load(&rig.store, LW_STORE_PARAMS, record, sizeof(record));
+	lw_device_init(&rig.device, &other, &inputs, 0, 0);
 	TEST_ASSERT_EQUAL_UINT8(1, rig.device.slave_config.unit_id);
 	TEST_ASSERT_EQUAL_INT32(7, rig.device.active.unit_id);
-	TEST_ASSERT_EQUAL_INT32(7, rig.device.stored.unit_id);
-	lw_device_init(&rig.device, &config, record, sizeof(record), &inputs, 0, 0);
+	TEST_ASSERT_EQUAL_INT32(7, rig.store.params.unit_id);
+	lw_device_init(&rig.device, &config, &inputs, 0, 0);
 	TEST_ASSERT_EQUAL_UINT8(7, rig.device.slave_config.unit_id);
 }
 
@@ -337,47 +219,6 @@ static void test_parameters_are_refused_while_tracking_and_commands_while_moving
 	TEST_ASSERT_EQUAL_INT(-EBUSY, write_register(LW_ADDRESS_JOG_HOLD_MS, 300));
 	TEST_ASSERT_EQUAL_UINT16(LW_REASON_BUSY_TRACKING, why.reason);
 	TEST_ASSERT_FALSE(flag(LW_FLAG_STAGED));
-}
-
-static void test_save_succeeds_fails_and_is_busy(void)
-{
-	struct lw_params read;
-
-	TEST_ASSERT_NULL(lw_device_pending_record(&rig.device));
-	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 300));
-	command(LW_COMMAND_APPLY);
-	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 350)); /* staged only */
-	command(LW_COMMAND_SAVE);
-	assert_command(LW_COMMAND_SAVE, LW_RESULT_IN_PROGRESS, LW_REASON_NONE);
-	TEST_ASSERT_TRUE(read_bit(LW_SPACE_COIL, LW_ADDRESS_SAVE));
-	TEST_ASSERT_NOT_NULL(lw_device_pending_record(&rig.device));
-	TEST_ASSERT_EQUAL_INT(
-		0, lw_record_decode(lw_device_pending_record(&rig.device), LW_RECORD_SIZE, &read));
-	TEST_ASSERT_EQUAL_MEMORY(&rig.device.active, &read, sizeof(read));
-	lw_device_record_written(&rig.device, -EIO);
-	assert_command(LW_COMMAND_SAVE, LW_RESULT_FAILED, LW_REASON_STORAGE_FAILED);
-	TEST_ASSERT_TRUE(flag(LW_FLAG_DIRTY));
-	TEST_ASSERT_NULL(lw_device_pending_record(&rig.device));
-
-	command(LW_COMMAND_SAVE);
-	assert_command_refused(LW_COMMAND_SAVE, LW_REASON_BUSY_SAVING);
-	lw_device_record_written(&rig.device, 0);
-	/* The refusal came after: its account stays. */
-	assert_command(LW_COMMAND_SAVE, LW_RESULT_REFUSED, LW_REASON_BUSY_SAVING);
-	TEST_ASSERT_FALSE(flag(LW_FLAG_DIRTY));
-
-	/* What is applied meanwhile is not what was saved. */
-	command(LW_COMMAND_SAVE);
-	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 400));
-	command(LW_COMMAND_APPLY);
-	lw_device_record_written(&rig.device, 0);
-	assert_command(LW_COMMAND_APPLY, LW_RESULT_DONE, LW_REASON_NONE);
-	TEST_ASSERT_EQUAL_INT32(300, rig.device.stored.jog_hold_ms);
-	TEST_ASSERT_TRUE(flag(LW_FLAG_DIRTY));
-	command(LW_COMMAND_SAVE);
-	lw_device_record_written(&rig.device, 0);
-	assert_command(LW_COMMAND_SAVE, LW_RESULT_DONE, LW_REASON_NONE);
-	TEST_ASSERT_FALSE(read_bit(LW_SPACE_COIL, LW_ADDRESS_SAVE));
 }
 
 static void test_factory_by_scope(void)
@@ -626,7 +467,6 @@ int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_power_up_without_a_record);
-	RUN_TEST(test_power_up_with_a_record);
 	RUN_TEST(test_the_host_can_override_line_settings_and_add_registers);
 	RUN_TEST(test_default_line_settings_do_not_touch_the_stored_ones);
 	RUN_TEST(test_parameters_are_staged_then_applied);
@@ -636,7 +476,6 @@ int main(void)
 	RUN_TEST(test_apply_turns_the_encoder_without_a_false_edge);
 	RUN_TEST(test_apply_of_another_contact_type_sees_a_switch_that_is_held);
 	RUN_TEST(test_parameters_are_refused_while_tracking_and_commands_while_moving);
-	RUN_TEST(test_save_succeeds_fails_and_is_busy);
 	RUN_TEST(test_factory_by_scope);
 	RUN_TEST(test_index_command_ends_done_faulted_or_stopped);
 	RUN_TEST(test_index_is_refused_with_a_turning_drum_and_stop_never);

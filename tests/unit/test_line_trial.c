@@ -12,7 +12,7 @@
 
 #define BYTES(...) (const uint8_t[]){__VA_ARGS__}, sizeof((const uint8_t[]){__VA_ARGS__})
 
-static const struct lw_device_config config = {.host = LW_HOST_SIMULATOR};
+static const struct lw_device_config config = {.host = LW_HOST_SIMULATOR, .store = &rig.store};
 static uint8_t answer[LW_RTU_FRAME_MAX];
 
 void setUp(void)
@@ -20,7 +20,7 @@ void setUp(void)
 	const struct lw_inputs inputs = rig_inputs();
 
 	rig_prepare(0);
-	lw_device_init(&rig.device, &config, NULL, 0, &inputs, rig.now_us, rig.now_us);
+	lw_device_init(&rig.device, &config, &inputs, rig.now_us, rig.now_us);
 	rig.controller = &rig.device.controller;
 	rig.with_device = true;
 	rig_ticks(300);
@@ -99,8 +99,8 @@ static void test_a_request_at_the_new_settings_confirms(void)
 	rig_ticks(2 * CONFIRM_S * 1000);
 	assert_line(NEW_UNIT, 9600, LW_LINE_FORMAT_8N2);
 	command(NEW_UNIT, LW_COMMAND_SAVE);
-	lw_device_record_written(&rig.device, 0);
-	TEST_ASSERT_EQUAL_INT32(NEW_UNIT, rig.device.stored.unit_id);
+	rig_write_slot(0);
+	TEST_ASSERT_EQUAL_INT32(NEW_UNIT, rig.store.params.unit_id);
 	TEST_ASSERT_FALSE(is_answered(OLD_UNIT));
 }
 
@@ -147,8 +147,8 @@ static void test_the_first_request_may_be_the_save(void)
 {
 	begin_trial();
 	command(NEW_UNIT, LW_COMMAND_SAVE);
-	lw_device_record_written(&rig.device, 0);
-	TEST_ASSERT_EQUAL_INT32(NEW_UNIT, rig.device.stored.unit_id);
+	rig_write_slot(0);
+	TEST_ASSERT_EQUAL_INT32(NEW_UNIT, rig.store.params.unit_id);
 	rig_ticks(2 * CONFIRM_S * 1000);
 	assert_line(NEW_UNIT, 9600, LW_LINE_FORMAT_8N2);
 	TEST_ASSERT_EQUAL_UINT8(LW_COMMAND_SAVE, rig.device.command.code);
@@ -181,7 +181,7 @@ static void test_a_power_cut_ends_a_trial(void)
 	const struct lw_inputs inputs = rig_inputs();
 
 	begin_trial();
-	lw_device_init(&rig.device, &config, NULL, 0, &inputs, rig.now_us, rig.now_us);
+	lw_device_init(&rig.device, &config, &inputs, rig.now_us, rig.now_us);
 	TEST_ASSERT_FALSE(flag(LW_FLAG_LINE_TRIAL));
 	assert_line(OLD_UNIT, 19200, LW_LINE_FORMAT_8E1);
 }

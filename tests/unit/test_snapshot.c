@@ -33,7 +33,7 @@ struct place {
 	int32_t u;
 };
 
-static const struct lw_device_config config = {.host = LW_HOST_SIMULATOR};
+static const struct lw_device_config config = {.host = LW_HOST_SIMULATOR, .store = &rig.store};
 static struct place places[2 * REACH_EDGES + 1];
 static int64_t net_edges_ahead; /**< net_edges - pattern_edges */
 
@@ -156,7 +156,7 @@ static void test_every_read_is_of_one_moment(void)
 
 	const struct lw_inputs inputs = rig_inputs();
 
-	lw_device_init(&rig.device, &config, NULL, 0, &inputs, rig.now_us, rig.now_us);
+	lw_device_init(&rig.device, &config, &inputs, rig.now_us, rig.now_us);
 	rig.controller = &rig.device.controller;
 	rig.with_device = true;
 	rig_ticks(300);

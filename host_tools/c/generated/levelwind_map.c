@@ -258,6 +258,18 @@ static const struct levelwind_value line_format_values[] = {
 	{3, "8N2", "8 data bits, no parity, 2 stop bits"},
 };
 
+static const struct levelwind_value slot_state_values[] = {
+	{0, "empty", "Never written, or erased"},
+	{1, "good", "An intact record of this firmware"},
+	{2, "older", "An intact record of an older schema, converted when it was loaded"},
+	{
+		3, "newer",
+		"An intact record of newer firmware that this one cannot read. It is kept until two more SAVEs",
+	},
+	{4, "damaged", "Cut short or changed: not used"},
+	{5, "refused", "An intact parameter set that this firmware does not accept: not used"},
+};
+
 static const struct levelwind_value flag_values[] = {
 	{0, "indexed", "The position is known"},
 	{1, "tracking", "The carriage follows the drum"},
@@ -923,6 +935,84 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "exceptions", .unit = "", .text = "Modbus exceptions answered",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 312,
 		.words = 2, .offset = offsetof(struct levelwind_status, exceptions),
+	},
+	{
+		.name = "boots", .unit = "", .text = "Power-ups. Survives power-off",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 314,
+		.words = 2, .offset = offsetof(struct levelwind_status, boots),
+	},
+	{
+		.name = "watchdog_resets", .unit = "",
+		.text = "Restarts by the watchdog. Survives power-off",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 316,
+		.words = 2, .offset = offsetof(struct levelwind_status, watchdog_resets),
+	},
+	{
+		.name = "powered_s", .unit = "s",
+		.text = "Time under power. Survives power-off but for up to 15 minutes",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 318,
+		.words = 2, .offset = offsetof(struct levelwind_status, powered_s),
+	},
+	{
+		.name = "tracking_s", .unit = "s",
+		.text = "Time in the state tracking. Survives power-off but for what came after the last write",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 320,
+		.words = 2, .offset = offsetof(struct levelwind_status, tracking_s),
+	},
+	{
+		.name = "log_sequence", .unit = "",
+		.text = "Event log: sequence number of the newest event, 0 if there is none",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 322,
+		.words = 2, .offset = offsetof(struct levelwind_status, log_sequence),
+	},
+	{
+		.name = "log_count", .unit = "", .text = "Event log: events that can be read",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 324,
+		.words = 1, .offset = offsetof(struct levelwind_status, log_count),
+	},
+	{
+		.name = "log_unsaved", .unit = "",
+		.text = "Event log: events that are not stored yet; they wait for the end of the tracking",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 325,
+		.words = 1, .offset = offsetof(struct levelwind_status, log_unsaved),
+	},
+	{
+		.name = "record_sequence", .unit = "",
+		.text = "Sequence number of the stored parameter set in use, 0 if there is none",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 326,
+		.words = 2, .offset = offsetof(struct levelwind_status, record_sequence),
+	},
+	{
+		.name = "record_schema", .unit = "",
+		.text = "Its schema; an older one becomes the present one by SAVE",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 328,
+		.words = 1, .offset = offsetof(struct levelwind_status, record_schema),
+	},
+	{
+		.name = "slot_0", .unit = "", .text = "Storage: first slot of the parameters",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 329,
+		.words = 1, .offset = offsetof(struct levelwind_status, slot_0),
+		.values = slot_state_values, .value_count = 6,
+	},
+	{
+		.name = "slot_1", .unit = "", .text = "Storage: second slot of the parameters",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 330,
+		.words = 1, .offset = offsetof(struct levelwind_status, slot_1),
+		.values = slot_state_values, .value_count = 6,
+	},
+	{
+		.name = "slot_2", .unit = "",
+		.text = "Storage: first slot of event log and counters",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 331,
+		.words = 1, .offset = offsetof(struct levelwind_status, slot_2),
+		.values = slot_state_values, .value_count = 6,
+	},
+	{
+		.name = "slot_3", .unit = "",
+		.text = "Storage: second slot of event log and counters",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 332,
+		.words = 1, .offset = offsetof(struct levelwind_status, slot_3),
+		.values = slot_state_values, .value_count = 6,
 	},
 	{
 		.name = "command_sequence", .unit = "",

@@ -347,6 +347,25 @@ enum levelwind_line_format {
 	LEVELWIND_LINE_FORMAT_8N2 = 3,
 };
 
+/** What a slot of the storage holds */
+enum levelwind_slot_state {
+	/** Never written, or erased */
+	LEVELWIND_SLOT_STATE_EMPTY = 0,
+	/** An intact record of this firmware */
+	LEVELWIND_SLOT_STATE_GOOD = 1,
+	/** An intact record of an older schema, converted when it was loaded */
+	LEVELWIND_SLOT_STATE_OLDER = 2,
+	/**
+	 * An intact record of newer firmware that this one cannot read. It is kept until two more
+	 * SAVEs
+	 */
+	LEVELWIND_SLOT_STATE_NEWER = 3,
+	/** Cut short or changed: not used */
+	LEVELWIND_SLOT_STATE_DAMAGED = 4,
+	/** An intact parameter set that this firmware does not accept: not used */
+	LEVELWIND_SLOT_STATE_REFUSED = 5,
+};
+
 /** Discrete inputs, and bit numbers of levelwind_status.flags */
 enum levelwind_flag {
 	/** The position is known */
@@ -544,6 +563,19 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_REQUESTS                      308
 #define LEVELWIND_ADDRESS_CRC_ERRORS                    310
 #define LEVELWIND_ADDRESS_EXCEPTIONS                    312
+#define LEVELWIND_ADDRESS_BOOTS                         314
+#define LEVELWIND_ADDRESS_WATCHDOG_RESETS               316
+#define LEVELWIND_ADDRESS_POWERED_S                     318
+#define LEVELWIND_ADDRESS_TRACKING_S                    320
+#define LEVELWIND_ADDRESS_LOG_SEQUENCE                  322
+#define LEVELWIND_ADDRESS_LOG_COUNT                     324
+#define LEVELWIND_ADDRESS_LOG_UNSAVED                   325
+#define LEVELWIND_ADDRESS_RECORD_SEQUENCE               326
+#define LEVELWIND_ADDRESS_RECORD_SCHEMA                 328
+#define LEVELWIND_ADDRESS_SLOT_0                        329
+#define LEVELWIND_ADDRESS_SLOT_1                        330
+#define LEVELWIND_ADDRESS_SLOT_2                        331
+#define LEVELWIND_ADDRESS_SLOT_3                        332
 #define LEVELWIND_ADDRESS_COMMAND_SEQUENCE              400
 #define LEVELWIND_ADDRESS_COMMAND_CODE                  401
 #define LEVELWIND_ADDRESS_COMMAND_RESULT                402
@@ -665,6 +697,34 @@ struct levelwind_status {
 	uint32_t crc_errors;
 	/** Modbus exceptions answered */
 	uint32_t exceptions;
+	/** Power-ups. Survives power-off */
+	uint32_t boots;
+	/** Restarts by the watchdog. Survives power-off */
+	uint32_t watchdog_resets;
+	/** Time under power. Survives power-off but for up to 15 minutes [s] */
+	uint32_t powered_s;
+	/**
+	 * Time in the state tracking. Survives power-off but for what came after the last write [s]
+	 */
+	uint32_t tracking_s;
+	/** Event log: sequence number of the newest event, 0 if there is none */
+	uint32_t log_sequence;
+	/** Event log: events that can be read */
+	int32_t log_count;
+	/** Event log: events that are not stored yet; they wait for the end of the tracking */
+	int32_t log_unsaved;
+	/** Sequence number of the stored parameter set in use, 0 if there is none */
+	uint32_t record_sequence;
+	/** Its schema; an older one becomes the present one by SAVE */
+	int32_t record_schema;
+	/** Storage: first slot of the parameters (enum levelwind_slot_state) */
+	int32_t slot_0;
+	/** Storage: second slot of the parameters (enum levelwind_slot_state) */
+	int32_t slot_1;
+	/** Storage: first slot of event log and counters (enum levelwind_slot_state) */
+	int32_t slot_2;
+	/** Storage: second slot of event log and counters (enum levelwind_slot_state) */
+	int32_t slot_3;
 	/** Counts every command, also refused ones */
 	int32_t command_sequence;
 	/** The last command (enum levelwind_command) */
@@ -750,7 +810,7 @@ struct levelwind_point {
 	size_t value_count;
 };
 
-#define LEVELWIND_POINT_COUNT 126
+#define LEVELWIND_POINT_COUNT 139
 
 /** All points, by block and rising address */
 extern const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT];

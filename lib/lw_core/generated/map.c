@@ -495,6 +495,58 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 		.type = LW_TYPE_U32,
 	},
 	{
+		.address = 314, .count = 1, .offset = offsetof(struct lw_status, boots),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 316, .count = 1, .offset = offsetof(struct lw_status, watchdog_resets),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 318, .count = 1, .offset = offsetof(struct lw_status, powered_s),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 320, .count = 1, .offset = offsetof(struct lw_status, tracking_s),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 322, .count = 1, .offset = offsetof(struct lw_status, log_sequence),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 324, .count = 1, .offset = offsetof(struct lw_status, log_count),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 325, .count = 1, .offset = offsetof(struct lw_status, log_unsaved),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 326, .count = 1, .offset = offsetof(struct lw_status, record_sequence),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 328, .count = 1, .offset = offsetof(struct lw_status, record_schema),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 329, .count = 1, .offset = offsetof(struct lw_status, slot_0),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 330, .count = 1, .offset = offsetof(struct lw_status, slot_1),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 331, .count = 1, .offset = offsetof(struct lw_status, slot_2),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 332, .count = 1, .offset = offsetof(struct lw_status, slot_3),
+		.type = LW_TYPE_U16,
+	},
+	{
 		.address = 400, .count = 1, .offset = offsetof(struct lw_status, command_sequence),
 		.type = LW_TYPE_U16,
 	},

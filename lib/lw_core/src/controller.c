@@ -194,7 +194,7 @@ bool lw_controller_moving(const struct lw_controller *controller)
 
 uint32_t lw_controller_timer_rate_edges_per_s(const struct lw_controller *controller)
 {
-	if (controller->motion.source != LW_EDGE_SOURCE_TIMER) {
+	if (controller->motion.source != LW_EDGE_SOURCE_TIMER || controller->storing) {
 		return 0;
 	}
 	return (uint32_t)(controller->state == LW_STATE_JOGGING
@@ -507,7 +507,7 @@ static void serve_mode(struct lw_controller *controller)
 	if (wanted == LW_MODE_TRACK) {
 		if ((controller->state == LW_STATE_READY ||
 		     controller->state == LW_STATE_CENTRED) &&
-		    controller->drum_at_rest) {
+		    controller->drum_at_rest && !controller->storing) {
 			hand_over(controller);
 		}
 	} else if (controller->state == LW_STATE_TRACKING || controller->state == LW_STATE_READY) {

@@ -73,7 +73,7 @@ int lw_device_allow_command(const struct lw_device *device, enum lw_command comm
 	case LW_COMMAND_CLEAR_FAULT:
 		return lw_controller_allow_clear_fault(controller, why);
 	case LW_COMMAND_SAVE:
-		if (device->save_pending) {
+		if (lw_store_saving(device->config->store)) {
 			why->reason = LW_REASON_BUSY_SAVING;
 			return -EBUSY;
 		}
@@ -113,6 +113,7 @@ static void apply(struct lw_device *device)
 
 	if (lw_params_derive(&device->staged, &derived, &device->command.why)) {
 		device->command.result = LW_RESULT_REFUSED;
+		lw_device_log(device, LW_EVENT_APPLY_REFUSED, device->command.why.reason);
 		return;
 	}
 
@@ -125,6 +126,7 @@ static void apply(struct lw_device *device)
 	device->active = device->staged;
 	device->derived = derived;
 	lw_controller_configure(&device->controller, &device->active, &device->derived, need_index);
+	lw_device_log(device, LW_EVENT_APPLIED, 0);
 }
 
 void lw_device_run_command(struct lw_device *device, enum lw_command command)
@@ -134,8 +136,11 @@ void lw_device_run_command(struct lw_device *device, enum lw_command command)
 	case LW_COMMAND_INDEX:
 		device->command.result = LW_RESULT_IN_PROGRESS;
 		lw_controller_index(&device->controller);
+		device->seen.indexing = true;
+		lw_device_log(device, LW_EVENT_INDEX_STARTED, 0);
 		break;
 	case LW_COMMAND_STOP:
+		lw_device_log(device, LW_EVENT_STOPPED, 0);
 		lw_controller_stop(&device->controller);
 		break;
 	case LW_COMMAND_CLEAR_FAULT:
@@ -149,18 +154,16 @@ void lw_device_run_command(struct lw_device *device, enum lw_command command)
 		break;
 	case LW_COMMAND_SAVE:
 		device->command.result = LW_RESULT_IN_PROGRESS;
-		device->saving = device->active;
-		lw_record_encode(&device->saving, device->record);
-		device->save_pending = true;
+		lw_store_save(device->config->store, &device->active);
+		/* No hand-over in between: it is written at once. */
+		device->controller.storing = true;
 		break;
 	case LW_COMMAND_FACTORY_MOTION:
-		stage_factory(device, true, false);
-		break;
 	case LW_COMMAND_FACTORY_LINE:
-		stage_factory(device, false, true);
-		break;
 	case LW_COMMAND_FACTORY_ALL:
-		stage_factory(device, true, true);
+		stage_factory(device, command != LW_COMMAND_FACTORY_LINE,
+			      command != LW_COMMAND_FACTORY_MOTION);
+		lw_device_log(device, LW_EVENT_FACTORY_STAGED, command);
 		break;
 	case LW_COMMAND_TRY_LINE:
 		device->command.result = LW_RESULT_IN_PROGRESS;
@@ -169,6 +172,7 @@ void lw_device_run_command(struct lw_device *device, enum lw_command command)
 	case LW_COMMAND_NONE:
 		break;
 	}
+	lw_device_log_changes(device);
 }
 
 /** Has a command that takes its time come to an end? */
@@ -189,26 +193,51 @@ static void watch_command(struct lw_device *device)
 	}
 }
 
-const uint8_t *lw_device_pending_record(const struct lw_device *device)
+size_t lw_device_begin_write(struct lw_device *device, unsigned int *slot,
+			     uint8_t bytes[LW_STORE_SLOT_SIZE])
 {
-	return device->save_pending ? device->record : NULL;
+	struct lw_controller *controller = &device->controller;
+	size_t length;
+
+	if (controller->state == LW_STATE_TRACKING || lw_controller_moving(controller)) {
+		return 0;
+	}
+	length = lw_store_begin_write(device->config->store, slot, bytes);
+	if (length > 0) {
+		controller->storing = true;
+	}
+	return length;
 }
 
-void lw_device_record_written(struct lw_device *device, int result)
+static void note_saved(struct lw_device *device, int result)
 {
-	const bool told = device->command.code == LW_COMMAND_SAVE &&
-			  device->command.result == LW_RESULT_IN_PROGRESS;
+	const struct lw_store_pair *pair = &device->config->store->pairs[LW_STORE_PARAMS / 2];
 
-	device->save_pending = false;
-	if (result == 0) {
-		device->stored = device->saving;
-		device->defaults_loaded = false;
-	}
-	if (told) {
+	lw_device_log(device, result ? LW_EVENT_SAVE_FAILED : LW_EVENT_SAVED,
+		      result ? result : (int32_t)pair->used_sequence);
+	if (device->command.code == LW_COMMAND_SAVE &&
+	    device->command.result == LW_RESULT_IN_PROGRESS) {
 		device->command.result = result == 0 ? LW_RESULT_DONE : LW_RESULT_FAILED;
 		device->command.why.reason =
 			result == 0 ? LW_REASON_NONE : LW_REASON_STORAGE_FAILED;
 	}
+}
+
+void lw_device_end_write(struct lw_device *device, int result)
+{
+	struct lw_store *store = device->config->store;
+	const bool is_params = store->writing_slot < LW_STORE_JOURNAL;
+
+	if (!store->writing) {
+		return;
+	}
+	lw_store_end_write(store, result);
+	if (is_params) {
+		note_saved(device, result);
+	} else {
+		lw_device_pause_journal(device);
+	}
+	device->controller.storing = lw_store_saving(store);
 }
 
 /** The run indicator of FC17: the carriage follows the drum. */
@@ -218,33 +247,30 @@ static bool is_running(const void *context)
 }
 
 void lw_device_init(struct lw_device *device, const struct lw_device_config *config,
-		    const uint8_t *record, size_t length, const struct lw_inputs *inputs,
-		    uint64_t now_us, uint64_t slave_now_us)
+		    const struct lw_inputs *inputs, uint64_t now_us, uint64_t slave_now_us)
 {
 	struct lw_refusal why;
 
 	*device = (struct lw_device){
-		.active = lw_params_default,
+		.active = config->store->params,
 		.command.why.address = LW_NO_ADDRESS,
 		.now_us = now_us,
+		.journal_pause_end_us = now_us,
 		.heard_us = now_us,
 		.heard_request_us = slave_now_us,
 		.config = config,
 	};
-	device->defaults_loaded = record == NULL ||
-				  lw_record_decode(record, length, &device->active) != 0 ||
-				  lw_params_derive(&device->active, &device->derived, &why) != 0;
-	if (device->defaults_loaded) {
-		device->active = lw_params_default;
-		(void)lw_params_derive(&device->active, &device->derived, &why);
-	}
+	/* The store holds no set that is refused. */
+	(void)lw_params_derive(&device->active, &device->derived, &why);
 	device->staged = device->active;
-	device->stored = device->active;
 
 	lw_controller_init(&device->controller, &device->active, &device->derived, inputs, now_us);
 	lw_device_make_bank(device);
+	device->files[0] = lw_device_log_file(device);
 	device->slave_config = (struct lw_slave_config){
 		.pdu.bank = &device->bank,
+		.pdu.files = device->files,
+		.pdu.file_count = LW_DEVICE_FILES,
 		.pdu.device_id = {LW_PRODUCT_VENDOR, LW_PRODUCT_CODE, LW_VERSION_STRING,
 				  LW_PRODUCT_URL, LW_PRODUCT_NAME, LW_PRODUCT_CODE},
 		.pdu.server_id = SERVER_ID,
@@ -253,11 +279,13 @@ void lw_device_init(struct lw_device *device, const struct lw_device_config *con
 	};
 	lw_device_line_init(device);
 	lw_slave_init(&device->slave, &device->slave_config, slave_now_us);
+	lw_device_log_power_up(device);
 }
 
 void lw_device_tick(struct lw_device *device, uint64_t now_us)
 {
 	const uint64_t timeout_us = (uint64_t)device->active.master_timeout_ms * 1000;
+	const uint64_t elapsed_us = now_us - device->now_us;
 
 	device->now_us = now_us;
 	if (device->slave.last_request_us != device->heard_request_us) {
@@ -269,4 +297,6 @@ void lw_device_tick(struct lw_device *device, uint64_t now_us)
 	watch_command(device);
 	lw_lock_tick(&device->lock, now_us);
 	lw_device_line_tick(device);
+	lw_device_log_changes(device);
+	lw_device_keep_journal(device, elapsed_us);
 }

@@ -291,7 +291,7 @@ void lw_device_make_bank(struct lw_device *device)
 		 .points = lw_map_params,
 		 .point_count = LW_MAP_PARAMS_COUNT,
 		 .address_offset = LW_MAP_STORED_ADDRESS_OFFSET,
-		 .context = &device->stored,
+		 .context = &device->config->store->params,
 		 .image = params_image},
 	};
 

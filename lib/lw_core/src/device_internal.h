@@ -46,6 +46,27 @@ void lw_device_line_try(struct lw_device *device);
 /** End a trial that is confirmed, or whose time is up. */
 void lw_device_line_tick(struct lw_device *device);
 
+/** Append an event to the log: now, here. */
+void lw_device_log(struct lw_device *device, enum lw_event event, int32_t detail);
+
+/** Log the power-up: what was found in the storage, and why there was one. */
+void lw_device_log_power_up(struct lw_device *device);
+
+/** Log what has changed since the last call. After every tick and every command. */
+void lw_device_log_changes(struct lw_device *device);
+
+/** The journal has been written, or could not be: no more for a while. */
+void lw_device_pause_journal(struct lw_device *device);
+
+/** Count the hours, and ask for the journal to be written when it is time. */
+void lw_device_keep_journal(struct lw_device *device, uint64_t elapsed_us);
+
+/** True if the drum is faster than the parameters allow. */
+bool lw_device_overspeed(const struct lw_device *device);
+
+/** The event log as a file. */
+struct lw_pdu_file lw_device_log_file(struct lw_device *device);
+
 /** Fill the list of sections. */
 void lw_device_make_bank(struct lw_device *device);
 

@@ -10,7 +10,6 @@ static bool same(const struct lw_params *a, const struct lw_params *b)
 static uint32_t flags(const struct lw_device *device, uint16_t launch_inhibit)
 {
 	const struct lw_controller *controller = &device->controller;
-	const int32_t speed = controller->drum_speed_edges_per_s;
 	const bool los[4] = {controller->los1[LW_PLUS].set, controller->los1[LW_MINUS].set,
 			     controller->los2[LW_PLUS].set, controller->los2[LW_MINUS].set};
 	uint32_t bits = 0;
@@ -33,13 +32,12 @@ static uint32_t flags(const struct lw_device *device, uint16_t launch_inhibit)
 	FLAG(WIRING_MINUS, controller->wiring[LW_MINUS]);
 	FLAG(OVERTRAVEL_PLUS, controller->overtravel[LW_PLUS]);
 	FLAG(OVERTRAVEL_MINUS, controller->overtravel[LW_MINUS]);
-	FLAG(OVERSPEED_WARNING,
-	     (uint32_t)(speed < 0 ? -speed : speed) > device->active.overspeed_warning_edges_per_s);
+	FLAG(OVERSPEED_WARNING, lw_device_overspeed(device));
 	FLAG(OVERSPEED_TRIP, controller->overspeed_trip);
 	FLAG(MASTER_LOST, controller->master_lost);
 	FLAG(STAGED, !same(&device->staged, &device->active));
-	FLAG(DIRTY, !same(&device->active, &device->stored));
-	FLAG(DEFAULTS_LOADED, device->defaults_loaded);
+	FLAG(DIRTY, !same(&device->active, &device->config->store->params));
+	FLAG(DEFAULTS_LOADED, !lw_store_has_params(device->config->store));
 	FLAG(TRIM_PENDING, controller->state != LW_STATE_PARKING &&
 				   controller->motion.requests & LW_MOTION_REQUEST_WINDOW);
 	FLAG(CORRECTION_PENDING, (controller->motion.requests & LW_MOTION_REQUEST_CORRECTION) != 0);
@@ -55,6 +53,11 @@ static uint32_t flags(const struct lw_device *device, uint16_t launch_inhibit)
 static int32_t clamp32(int64_t value)
 {
 	return value > INT32_MAX ? INT32_MAX : value < INT32_MIN ? INT32_MIN : (int32_t)value;
+}
+
+static int32_t clamp16(uint32_t value)
+{
+	return value > UINT16_MAX ? UINT16_MAX : (int32_t)value;
 }
 
 /** Rope length of a number of edges, in millimetres per `per` edges; 64 bit throughout. */
@@ -77,6 +80,9 @@ void lw_device_refresh_status(struct lw_device *device)
 	const struct lw_last_error *error = &device->slave.pdu.last_error;
 	const struct lw_los_record *los1 = controller->los1;
 	const struct lw_los_record *los2 = controller->los2;
+	const struct lw_store *store = device->config->store;
+	const struct lw_store_pair *param_slots = &store->pairs[LW_STORE_PARAMS / 2];
+	const struct lw_store_pair *journal_slots = &store->pairs[LW_STORE_JOURNAL / 2];
 	const uint16_t launch_inhibit = lw_controller_launch_inhibit(controller);
 	const struct lw_law_window track =
 		controller->state == LW_STATE_TRACKING
@@ -132,6 +138,20 @@ void lw_device_refresh_status(struct lw_device *device)
 		.requests = device->slave.pdu.counters[LW_BUS_SERVER_MESSAGES],
 		.crc_errors = device->slave.pdu.counters[LW_BUS_CRC_ERRORS],
 		.exceptions = device->slave.pdu.counters[LW_BUS_EXCEPTIONS],
+
+		.boots = store->counters.boots,
+		.watchdog_resets = store->counters.watchdog_resets,
+		.powered_s = store->counters.powered_s,
+		.tracking_s = store->counters.tracking_s,
+		.log_sequence = store->log.newest,
+		.log_count = lw_log_count(&store->log),
+		.log_unsaved = clamp16(store->log.newest - store->log_stored),
+		.record_sequence = param_slots->used_sequence,
+		.record_schema = param_slots->used_schema,
+		.slot_0 = (int32_t)param_slots->state[0],
+		.slot_1 = (int32_t)param_slots->state[1],
+		.slot_2 = (int32_t)journal_slots->state[0],
+		.slot_3 = (int32_t)journal_slots->state[1],
 
 		.command_sequence = device->command.sequence,
 		.command_code = device->command.code,

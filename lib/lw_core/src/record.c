@@ -1,91 +1,75 @@
 #include "lw/record.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <string.h>
 
-#include "lw/bank.h"
+#include "big_endian.h"
 
-static const uint8_t magic[4] = {'L', 'W', 'P', 'S'};
+#define KIND_SIZE 4
 
-/** CRC-32 as in Ethernet and zip (reflected polynomial 0xEDB88320). */
-static uint32_t crc32(const uint8_t *bytes, size_t length)
+uint32_t lw_crc32(const uint8_t *bytes, size_t length)
 {
+	/* The polynomial times every half byte: a compromise between size and time. */
+	static const uint32_t table[16] = {0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu,
+					   0x76DC4190u, 0x6B6B51F4u, 0x4DB26158u, 0x5005713Cu,
+					   0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
+					   0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu};
 	uint32_t crc = 0xFFFFFFFFu;
 
 	for (size_t i = 0; i < length; i++) {
 		crc ^= bytes[i];
-		for (int bit = 0; bit < 8; bit++) {
-			crc = crc & 1 ? crc >> 1 ^ 0xEDB88320u : crc >> 1;
-		}
+		crc = table[crc & 0xFu] ^ crc >> 4;
+		crc = table[crc & 0xFu] ^ crc >> 4;
 	}
 	return ~crc;
 }
 
-static uint8_t *put16(uint8_t *at, uint16_t value)
+size_t lw_record_seal(uint8_t *bytes, const char *kind, uint16_t schema, uint32_t sequence,
+		      size_t length)
 {
-	at[0] = (uint8_t)value;
-	at[1] = (uint8_t)(value >> 8);
-	return at + 2;
+	uint8_t *at = bytes;
+
+	memcpy(at, kind, KIND_SIZE);
+	at = lw_put16(at + KIND_SIZE, schema);
+	at = lw_put16(at, (uint16_t)length);
+	(void)lw_put32(at, sequence);
+	(void)lw_put32(bytes + LW_RECORD_HEAD_SIZE + length,
+		       lw_crc32(bytes, LW_RECORD_HEAD_SIZE + length));
+	return length + LW_RECORD_OVERHEAD;
 }
 
-static uint8_t *put32(uint8_t *at, uint32_t value)
+static bool erased(const uint8_t *bytes, size_t size)
 {
-	return put16(put16(at, (uint16_t)value), (uint16_t)(value >> 16));
-}
-
-static uint16_t get16(const uint8_t *at)
-{
-	return (uint16_t)(at[0] | at[1] << 8);
-}
-
-static uint32_t get32(const uint8_t *at)
-{
-	return get16(at) | (uint32_t)get16(at + 2) << 16;
-}
-
-void lw_record_encode(const struct lw_params *params, uint8_t record[LW_RECORD_SIZE])
-{
-	uint8_t *at = record;
-
-	memcpy(at, magic, sizeof(magic));
-	at = put16(at + sizeof(magic), LW_MAP_VERSION);
-	at = put16(at, LW_MAP_PARAMS_COUNT);
-	for (size_t i = 0; i < LW_MAP_PARAMS_COUNT; i++) {
-		uint32_t value;
-
-		/* All members are 32 bit wide, signed or not. */
-		memcpy(&value, (const char *)params + lw_map_params[i].offset, sizeof(value));
-		at = put32(at, value);
+	for (size_t i = 0; i < size; i++) {
+		if (bytes[i] != bytes[0]) {
+			return false;
+		}
 	}
-	put32(at, crc32(record, LW_RECORD_SIZE - 4));
+	return size == 0 || bytes[0] == 0x00 || bytes[0] == 0xFF;
 }
 
-int lw_record_decode(const uint8_t *record, size_t length, struct lw_params *params)
+int lw_record_open(const uint8_t *bytes, size_t size, const char *kind, struct lw_record *record)
 {
-	struct lw_params result;
-	int32_t limit;
+	size_t length;
 
-	if (length < sizeof(magic) + 4 || memcmp(record, magic, sizeof(magic)) != 0) {
+	if (erased(bytes, size)) {
+		return -ENODATA;
+	}
+	if (size < LW_RECORD_OVERHEAD || memcmp(bytes, kind, KIND_SIZE) != 0) {
 		return -EBADMSG;
 	}
-	if (length != LW_RECORD_SIZE ||
-	    crc32(record, LW_RECORD_SIZE - 4) != get32(record + LW_RECORD_SIZE - 4)) {
-		return get16(record + 4) == LW_MAP_VERSION ? -EBADMSG : -ENOTSUP;
+	length = lw_get16(bytes + KIND_SIZE + 2);
+	if (length > size - LW_RECORD_OVERHEAD ||
+	    lw_crc32(bytes, LW_RECORD_HEAD_SIZE + length) !=
+		    lw_get32(bytes + LW_RECORD_HEAD_SIZE + length)) {
+		return -EBADMSG;
 	}
-	if (get16(record + 4) != LW_MAP_VERSION || get16(record + 6) != LW_MAP_PARAMS_COUNT) {
-		return -ENOTSUP;
-	}
-	for (size_t i = 0; i < LW_MAP_PARAMS_COUNT; i++) {
-		const uint32_t value = get32(record + 8 + 4 * i);
-
-		if (!lw_point_allows(&lw_map_params[i],
-				     lw_map_params[i].type == LW_TYPE_U32 ? (int64_t)value
-									  : (int32_t)value,
-				     &limit)) {
-			return -EBADMSG;
-		}
-		memcpy((char *)&result + lw_map_params[i].offset, &value, sizeof(value));
-	}
-	*params = result;
+	*record = (struct lw_record){
+		.schema = lw_get16(bytes + KIND_SIZE),
+		.sequence = lw_get32(bytes + KIND_SIZE + 4),
+		.payload = bytes + LW_RECORD_HEAD_SIZE,
+		.length = length,
+	};
 	return 0;
 }

@@ -712,6 +712,19 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_REQUESTS                 308
 #define LW_ADDRESS_CRC_ERRORS               310
 #define LW_ADDRESS_EXCEPTIONS               312
+#define LW_ADDRESS_BOOTS                    314
+#define LW_ADDRESS_WATCHDOG_RESETS          316
+#define LW_ADDRESS_POWERED_S                318
+#define LW_ADDRESS_TRACKING_S               320
+#define LW_ADDRESS_LOG_SEQUENCE             322
+#define LW_ADDRESS_LOG_COUNT                324
+#define LW_ADDRESS_LOG_UNSAVED              325
+#define LW_ADDRESS_RECORD_SEQUENCE          326
+#define LW_ADDRESS_RECORD_SCHEMA            328
+#define LW_ADDRESS_SLOT_0                   329
+#define LW_ADDRESS_SLOT_1                   330
+#define LW_ADDRESS_SLOT_2                   331
+#define LW_ADDRESS_SLOT_3                   332
 #define LW_ADDRESS_COMMAND_SEQUENCE         400
 #define LW_ADDRESS_COMMAND_CODE             401
 #define LW_ADDRESS_COMMAND_RESULT           402
@@ -1004,6 +1017,34 @@ struct lw_status {
 	uint32_t crc_errors;
 	/** Modbus exceptions answered */
 	uint32_t exceptions;
+	/** Power-ups. Survives power-off */
+	uint32_t boots;
+	/** Restarts by the watchdog. Survives power-off */
+	uint32_t watchdog_resets;
+	/** Time under power. Survives power-off but for up to 15 minutes [s] */
+	uint32_t powered_s;
+	/**
+	 * Time in the state tracking. Survives power-off but for what came after the last write [s]
+	 */
+	uint32_t tracking_s;
+	/** Event log: sequence number of the newest event, 0 if there is none */
+	uint32_t log_sequence;
+	/** Event log: events that can be read */
+	int32_t log_count;
+	/** Event log: events that are not stored yet; they wait for the end of the tracking */
+	int32_t log_unsaved;
+	/** Sequence number of the stored parameter set in use, 0 if there is none */
+	uint32_t record_sequence;
+	/** Its schema; an older one becomes the present one by SAVE */
+	int32_t record_schema;
+	/** Storage: first slot of the parameters (enum lw_slot_state) */
+	int32_t slot_0;
+	/** Storage: second slot of the parameters (enum lw_slot_state) */
+	int32_t slot_1;
+	/** Storage: first slot of event log and counters (enum lw_slot_state) */
+	int32_t slot_2;
+	/** Storage: second slot of event log and counters (enum lw_slot_state) */
+	int32_t slot_3;
 	/** Counts every command, also refused ones */
 	int32_t command_sequence;
 	/** The last command (enum lw_command) */
@@ -1134,7 +1175,7 @@ extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
  */
 extern const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT];
 
-#define LW_MAP_STATUS_COUNT 66
+#define LW_MAP_STATUS_COUNT 79
 
 /**
  * Identity, live status, LOS records, counters, command results and derived values: input

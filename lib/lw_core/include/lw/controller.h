@@ -67,6 +67,7 @@ struct lw_controller {
 	bool on_orbit;    /**< parked in a reversal of the pattern: hand-over keeps the slope */
 	bool held;        /**< stopped by command: no hand-over until a mode is written */
 	bool master_lost; /**< told by the owner */
+	bool storing; /**< told by the owner: the storage is written, nothing may begin to move */
 	bool overspeed_trip;
 
 	/* Indexing and other moves. */

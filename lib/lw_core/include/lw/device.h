@@ -18,8 +18,8 @@
 #include "lw/lock.h"
 #include "lw/map.h"
 #include "lw/params.h"
-#include "lw/record.h"
 #include "lw/slave.h"
+#include "lw/store.h"
 
 /** Sections of the bank that a device makes itself, and room for the host's. */
 enum {
@@ -27,9 +27,19 @@ enum {
 	LW_DEVICE_HOST_SECTIONS = 1,
 };
 
+/** Files of FC20 and FC21. */
+enum {
+	LW_DEVICE_FILES = 1,
+	LW_DEVICE_LOG_FILE = 1, /**< number of the event log: LW_LOG_RECORD_WORDS for each event */
+};
+
 /** What the host is. */
 struct lw_device_config {
 	enum lw_host host;
+	/** What the storage holds: loaded before lw_device_init(), kept up to date afterwards. */
+	struct lw_store *store;
+	/** The watchdog has caused this power-up. */
+	bool watchdog_reset;
 	/** Further registers that the host offers (the bench), or NULL. */
 	const struct lw_bank_section *host_section;
 	/** Silence that ends a frame; 0: by the baud rate in use (lw_rtu_silence_us()). */
@@ -63,6 +73,19 @@ struct lw_line_trial {
 	uint64_t ends_us;
 };
 
+/** What the event log compares with, to notice changes. */
+struct lw_device_seen {
+	enum lw_state state;
+	enum lw_mode mode;
+	enum lw_fault fault;
+	uint16_t los_count[4]; /**< 1+, 1-, 2+, 2- */
+	bool wiring[2];
+	bool master_lost;
+	bool overspeed; /**< warned of since the drum last rested */
+	bool indexing;  /**< an indexing has begun and not ended */
+	bool unlocked;  /**< the write lock was open */
+};
+
 /** State. The host reads; everything is written by the functions here and by the slave. */
 struct lw_device {
 	struct lw_controller controller;
@@ -70,9 +93,7 @@ struct lw_device {
 
 	struct lw_params active;
 	struct lw_params staged;
-	struct lw_params stored;
 	struct lw_derived derived; /**< of the active set */
-	bool defaults_loaded;      /**< no usable record at power-up */
 	struct lw_lock lock;       /**< of the active set's lock_code */
 
 	/**
@@ -84,9 +105,11 @@ struct lw_device {
 
 	struct lw_device_command command;
 
-	bool save_pending; /**< `record` waits for the host to write it */
-	struct lw_params saving;
-	uint8_t record[LW_RECORD_SIZE];
+	struct lw_device_seen seen;
+	uint64_t journal_due_us;       /**< when events that are not stored yet shall be */
+	uint64_t journal_pause_end_us; /**< not before, for the life of the flash */
+	uint32_t powered_us;           /**< of the present second */
+	uint32_t tracking_us;          /**< of the present second */
 
 	uint64_t now_us;           /**< of the last tick */
 	uint64_t heard_request_us; /**< slave's time of the last request that was noticed */
@@ -100,39 +123,42 @@ struct lw_device {
 	const struct lw_device_config *config;
 	struct lw_bank_section sections[LW_DEVICE_SECTIONS + LW_DEVICE_HOST_SECTIONS];
 	struct lw_bank bank;
+	struct lw_pdu_file files[LW_DEVICE_FILES];
 	struct lw_slave_config slave_config;
 };
 
 /**
  * Power up.
  *
- * @param config must outlive the device
- * @param record what the storage holds, or NULL
- * @param length its bytes
+ * @param config must outlive the device; its store has been loaded
  * @param inputs pins now
  * @param now_us time for the controller
  * @param slave_now_us time for the slave, which may be another clock
  */
 void lw_device_init(struct lw_device *device, const struct lw_device_config *config,
-		    const uint8_t *record, size_t length, const struct lw_inputs *inputs,
-		    uint64_t now_us, uint64_t slave_now_us);
+		    const struct lw_inputs *inputs, uint64_t now_us, uint64_t slave_now_us);
 
 /** Supervise. Call every LW_CONTROLLER_TICK_US; includes lw_controller_tick(). */
 void lw_device_tick(struct lw_device *device, uint64_t now_us);
 
 /**
- * Does a record wait to be written?
+ * Begin the write to the storage that is due, if any. The controller neither tracks nor moves until
+ * lw_device_end_write(), so that a processor that cannot run while its flash is written or erased
+ * misses no edge.
  *
- * @return LW_RECORD_SIZE bytes, or NULL
+ * @param slot receives the slot to write, 0 to LW_STORE_SLOTS - 1
+ * @param bytes receives what to write
+ * @return its bytes; 0 if there is nothing to write now
  */
-const uint8_t *lw_device_pending_record(const struct lw_device *device);
+size_t lw_device_begin_write(struct lw_device *device, unsigned int *slot,
+			     uint8_t bytes[LW_STORE_SLOT_SIZE]);
 
 /**
- * Report that the pending record has been written.
+ * Report the end of a write.
  *
  * @param result 0, or a negative errno if the storage failed
  */
-void lw_device_record_written(struct lw_device *device, int result);
+void lw_device_end_write(struct lw_device *device, int result);
 
 /** Fill `status_image` with one consistent snapshot. */
 void lw_device_refresh_status(struct lw_device *device);

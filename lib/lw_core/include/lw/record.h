@@ -1,10 +1,13 @@
 /**
  * @file
- * The stored form of a parameter set: bytes with a version and a CRC, the same on every host.
- * Not for interrupt context.
+ * How anything is stored: bytes with a kind, a schema, a sequence number and a CRC, the same on
+ * every host. Not for interrupt context.
  *
- *     'L' 'W' 'P' 'S', map version (16 bit), number of values (16 bit),
- *     the values in the order of the map (32 bit each), CRC-32 of all before; little-endian
+ *     kind (4 characters), schema (16 bit), bytes of the payload (16 bit), sequence (32 bit),
+ *     payload, CRC-32 of all before; high byte first
+ *
+ * This frame stays as it is in every schema, so that a record of newer firmware can be told from a
+ * damaged one. What follows in a slot behind the CRC does not matter.
  */
 #ifndef LW_RECORD_H
 #define LW_RECORD_H
@@ -12,22 +15,43 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "lw/map.h"
+/** Bytes before the payload. */
+#define LW_RECORD_HEAD_SIZE 12
 
-/** Bytes of a record. */
-#define LW_RECORD_SIZE (4 + 2 + 2 + 4 * LW_MAP_PARAMS_COUNT + 4)
+/** Bytes of a record besides its payload. */
+#define LW_RECORD_OVERHEAD (LW_RECORD_HEAD_SIZE + 4)
 
-/** Write a parameter set as a record. */
-void lw_record_encode(const struct lw_params *params, uint8_t record[LW_RECORD_SIZE]);
+/** A record that has been opened. */
+struct lw_record {
+	uint16_t schema;
+	uint32_t sequence;
+	const uint8_t *payload;
+	size_t length; /**< bytes of the payload */
+};
+
+/** CRC-32 as in Ethernet and zip (reflected polynomial 0xEDB88320). */
+uint32_t lw_crc32(const uint8_t *bytes, size_t length);
 
 /**
- * Read a record.
+ * Put head and CRC around a payload that stands at `bytes + LW_RECORD_HEAD_SIZE` already.
  *
- * @param params receives the set; unchanged on any error
- * @retval 0 done; every value is within the limits of its register
- * @retval -EBADMSG not a record, cut short, damaged, or a value outside its limits
- * @retval -ENOTSUP a record of another map version
+ * @param kind 4 characters
+ * @param length bytes of the payload, up to 65535
+ * @return bytes of the record
  */
-int lw_record_decode(const uint8_t *record, size_t length, struct lw_params *params);
+size_t lw_record_seal(uint8_t *bytes, const char *kind, uint16_t schema, uint32_t sequence,
+		      size_t length);
+
+/**
+ * Open a record.
+ *
+ * @param kind 4 characters
+ * @param size bytes that can be read
+ * @param record receives head and payload, which points into `bytes`; unchanged on any error
+ * @retval 0 intact
+ * @retval -ENODATA nothing there: no bytes, all 0x00 or all 0xFF
+ * @retval -EBADMSG not a record of this kind, cut short, or damaged
+ */
+int lw_record_open(const uint8_t *bytes, size_t size, const char *kind, struct lw_record *record);
 
 #endif /* LW_RECORD_H */
