@@ -12,6 +12,7 @@ from pathlib import Path
 import emit_client
 import emit_core
 import emit_documents
+import emit_integrations
 import emit_pictures
 import emit_python
 from map_model import MapError, load
@@ -27,6 +28,10 @@ OUTPUTS = {
     "doc/states.svg": emit_pictures.states_svg,
     "doc/parameter_change.svg": emit_pictures.handshake_svg,
     "modbus_map/tags.csv": emit_documents.tags_csv,
+    "modbus_map/tags.json": emit_integrations.map_json,
+    "modbus_map/tags_node_red.json": emit_integrations.node_red_json,
+    "modbus_map/tags_home_assistant.yaml": emit_integrations.home_assistant_yaml,
+    "modbus_map/tags_iec61131.st": emit_integrations.structured_text,
 }
 
 
