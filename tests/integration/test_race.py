@@ -66,7 +66,7 @@ def test_every_read_is_of_one_moment(slave: Slave, duration_ms: int) -> None:
     orbit = screw.orbit(LawState(start["m"], start["u"]))
     um_per_m = slave.read("screw_lead_um") / slave.read("microsteps_per_rev") / USTEP
     spin(slave)
-    end_ms = slave.read("uptime_ms") + duration_ms // 2
+    end_ms = slave.read("uptime_ms") + duration_ms // 4
     while slave.read("uptime_ms") < end_ms:
         for _ in range(20):
             now = slave.read_run(*names)
