@@ -18,6 +18,7 @@ from levelwind.map_table import (
 )
 from levelwind.points import lookup, runs
 from masters import MASTERS, ExceptionAnswer, Libmodbus, Master, Pymodbus
+from pymodbus.pdu.file_message import FileRecord
 from slave import TEST_DIR, UNIT, Slave
 
 SPACES = ("coil", "discrete", "holding", "input")
@@ -149,6 +150,10 @@ def test_pymodbus_and_the_other_functions(slave: Slave) -> None:
         read_address=address, read_count=2, address=address, values=[500], device_id=UNIT
     )
     assert answer.registers == [500, 2]
+    newest = slave.read("log_sequence")
+    record = FileRecord(file_number=1, record_number=16 * (newest % 64), record_length=2)
+    answer = client.read_file_record([record], device_id=UNIT)
+    assert int.from_bytes(answer.records[0].record_data, "big") == newest
 
 
 def test_libmodbus_and_the_other_functions(slave: Slave) -> None:
