@@ -151,7 +151,7 @@ def test_pymodbus_and_the_other_functions(slave: Slave) -> None:
     )
     assert answer.registers == [500, 2]
     newest = slave.read("log_sequence")
-    record = FileRecord(file_number=1, record_number=16 * (newest % 64), record_length=2)
+    record = FileRecord(file_number=1, record_number=16 * (newest % 64), record_length=4)  # bytes
     answer = client.read_file_record([record], device_id=UNIT)
     assert int.from_bytes(answer.records[0].record_data, "big") == newest
 
