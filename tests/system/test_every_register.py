@@ -1,6 +1,7 @@
 """Every address of the four spaces, by every function that reaches it, against the map."""
 
 import struct
+from pathlib import Path
 
 import pytest
 from levelwind.map_table import POINTS, Point, Reason
@@ -115,3 +116,65 @@ def test_a_value_outside_of_its_limits_changes_nothing(world: World, point: Poin
         assert world.value("last_error_reason") == Reason.OUT_OF_RANGE
         assert world.value("last_error_address") == point.address
         assert world.request(read) == before
+
+
+def acts_by_itself(point: Point) -> bool:
+    """Writing it is not just storing a value: it runs something, or needs the right code."""
+    return point.command or point.name in ("jog", "unlock", "bench_trigger_fault")
+
+
+@pytest.mark.parametrize(
+    "point",
+    [p for p in POINTS.values() if p.space == "holding" and p.writable and not acts_by_itself(p)],
+    ids=lambda point: point.name,
+)
+def test_values_at_the_limits_are_taken(point: Point) -> None:
+    world = World()
+    size = 2 * point.words
+    head = struct.pack(">BHHB", 16, point.address, point.words, size)
+    read = struct.pack(">BHH", READ["holding"], point.address, point.words)
+    for value in point.allowed or (point.min, point.max):
+        data = (value & (1 << 8 * size) - 1).to_bytes(size, "big")
+        refused = exception(world.request(head + data))
+        if point.name.startswith("trim_") and refused:
+            # Within its limits, but the trimmed pattern would not fit the machine.
+            assert world.value("last_error_reason") not in (Reason.NONE, Reason.OUT_OF_RANGE)
+            continue
+        assert refused == 0, value
+        if not point.secret:
+            assert world.request(read)[2:] == data, value
+
+
+def test_the_documentation_says_the_same() -> None:
+    """doc/registers.md: address, type, access, unit, limits and default of every register."""
+    page = (Path(__file__).parents[2] / "doc" / "registers.md").read_text()
+    rows = {}
+    head: list[str] = []
+    for line in page.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split(" | ")]
+        if line.startswith("| address"):
+            head = cells
+        elif line.startswith("| ") and len(cells) == len(head) and cells[0].isdigit():
+            row = dict(zip(head, cells, strict=True))
+            rows[row["name"].strip("`")] = row
+    registers = [p for p in POINTS.values() if p.space in ("holding", "input")]
+    for point in registers:
+        row = rows.pop(point.name)
+        array = f"[{point.count}]" if point.count > 1 else ""
+        assert row["address"] == str(point.address)
+        assert row["type"] == point.type + array
+        assert row["unit"] == point.unit
+        if "access" not in row:
+            assert not point.writable
+            continue
+        assert row["access"] == ("rw" if point.writable else "r")
+        if not point.writable:
+            assert row["limits"] == row["default"] == ""
+        elif point.allowed:
+            assert row["limits"] == ", ".join(map(str, point.allowed))
+            assert row["default"] == str(point.default)
+        else:
+            assert row["limits"] == f"{point.min} to {point.max}"
+            assert row["default"] == str(point.default)
+    bits = {p.name: str(p.address) for p in POINTS.values() if p.space in ("coil", "discrete")}
+    assert {name: row["address"] for name, row in rows.items()} == bits
