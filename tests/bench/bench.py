@@ -13,16 +13,20 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
+sys.path.insert(0, str(Path(__file__).parent.parent / "integration"))
 
+from latency import ANSWER_MAX_MS, BAUD, REGISTERS, of_target
 from levelwind.device import Device, Line
 from levelwind.map_table import POINTS, Command
 from levelwind.native import SIMULATOR, find
+from slave import NATIVE_SIM
 from world import MILLIRPM_PER_EDGE_PER_S, World
 
 TOP_EDGES_PER_S = 48_000  # 40 m/s of rope
 FASTER_THAN_REAL_TIME_MIN = 100
 POLLED_S = 10.0
 BEHIND_MAX_MS = 200  # from there on lw_sim gives lost time up
+LATENCY_READS = 2000
 LAW_CASES = ("sweep", "reversal", "direction_change")
 
 
@@ -119,6 +123,21 @@ def poll(device: Device) -> list[Result]:
     ]
 
 
+def answers(target: str) -> list[Result]:
+    """A read of 20 registers at the fastest drum, from the end of the request on."""
+    with tempfile.TemporaryDirectory() as folder:
+        found = of_target(target, Path(folder), LATENCY_READS)
+    options = (
+        f"{REGISTERS} registers, {BAUD} baud, {TOP_EDGES_PER_S} edges/s, {LATENCY_READS} reads"
+    )
+    own = f"{options}, without waiting for a processor"
+    return [
+        result("answer, median", target, options, [found.median_ms], "ms"),
+        result("answer, 99.9 %", target, options, [found.slowest_permille_ms], "ms"),
+        result("answer, the slave's time", target, own, found.slave_ms, "ms"),
+    ]
+
+
 def wait_for_rest(device: Device) -> None:
     """Until the controller sees the drum at rest."""
     while not device.value("drum_at_rest"):
@@ -157,7 +176,15 @@ def main() -> int:
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the results here, too")
     arguments = parser.parse_args()
 
-    results = [*unpaced(), *polled(), *(law(case) for case in LAW_CASES)]
+    targets = ["sim", "native_sim"] if NATIVE_SIM.exists() else ["sim"]
+    if len(targets) < 2:
+        print(f"bench: native_sim left out, {NATIVE_SIM} is not built", file=sys.stderr)
+    results = [
+        *unpaced(),
+        *polled(),
+        *(r for target in targets for r in answers(target)),
+        *(law(case) for case in LAW_CASES),
+    ]
     width = max(len(r.name) for r in results)
     print(f"{'':{width}}  {'min':>9} {'avg':>9} {'max':>9}")
     for r in results:
@@ -174,6 +201,9 @@ def main() -> int:
         failures.append("the simulator has lost edges")
     if by_name["behind real time at the end"].max > BEHIND_MAX_MS:
         failures.append("the simulator has not kept up with real time")
+    for late in (r for r in results if r.name == "answer, the slave's time"):
+        if late.max > ANSWER_MAX_MS:
+            failures.append(f"{late.target} has answered after more than {ANSWER_MAX_MS:g} ms")
     for failure in failures:
         print(f"bench: {failure}", file=sys.stderr)
     return 1 if failures else 0
