@@ -335,38 +335,54 @@ static void test_parameter_commands_are_logged(void)
 		      {LW_EVENT_SAVE_FAILED, -EIO}, {LW_EVENT_SAVED, 1});
 }
 
-static void test_events_are_stored_together_and_seldom(void)
+static void test_events_are_stored_together_soon_after(void)
 {
 	TEST_ASSERT_EQUAL_INT(-1, rig_write_slot(0));
-	wait_us(2 * S_US);
+	wait_us(S_US);
+	command(LW_COMMAND_STOP);
+	wait_us(S_US);
+	TEST_ASSERT_EQUAL_INT32(3, status()->log_unsaved);
 	TEST_ASSERT_EQUAL_INT(LW_STORE_JOURNAL, rig_write_slot(0));
 	TEST_ASSERT_EQUAL_INT32(0, status()->log_unsaved);
 	rig_tick();
 	TEST_ASSERT_EQUAL_INT(-1, rig_write_slot(0));
 
-	/* The next one waits for the end of the pause, with all that has come until then. */
+	wait_us(3 * S_US);
 	command(LW_COMMAND_STOP);
-	wait_us(30 * S_US);
-	command(LW_COMMAND_STOP);
-	wait_us(29 * S_US);
+	rig_tick();
 	TEST_ASSERT_EQUAL_INT(-1, rig_write_slot(0));
-	TEST_ASSERT_EQUAL_INT32(2, status()->log_unsaved);
 	wait_us(2 * S_US);
 	TEST_ASSERT_EQUAL_INT(LW_STORE_JOURNAL + 1, rig_write_slot(-EIO));
-	TEST_ASSERT_EQUAL_INT32(2, status()->log_unsaved);
-	wait_us(50 * S_US);
-	TEST_ASSERT_EQUAL_INT(-1, rig_write_slot(0));
-	wait_us(10 * S_US);
+	TEST_ASSERT_EQUAL_INT32(1, status()->log_unsaved);
+	rig_tick();
 	TEST_ASSERT_EQUAL_INT(LW_STORE_JOURNAL + 1, rig_write_slot(0));
 	TEST_ASSERT_EQUAL_INT32(0, status()->log_unsaved);
+}
 
-	/* After a pause without events the next one is stored soon. */
-	wait_us(100 * S_US);
-	command(LW_COMMAND_STOP);
-	rig_tick();
-	TEST_ASSERT_EQUAL_INT(-1, rig_write_slot(0));
-	wait_us(2 * S_US);
-	TEST_ASSERT_EQUAL_INT(LW_STORE_JOURNAL, rig_write_slot(0));
+/** Log an event each 2 s. @return writes */
+static int store_events(int seconds)
+{
+	int writes = 0;
+
+	for (int i = 0; i < seconds; i += 2) {
+		command(LW_COMMAND_STOP);
+		wait_us(2 * S_US);
+		writes += rig_write_slot(0) >= 0 ? 1 : 0;
+	}
+	return writes;
+}
+
+static void test_many_events_do_not_wear_the_flash_out(void)
+{
+	const int at_once = store_events(40);
+
+	TEST_ASSERT_EQUAL_INT(10, at_once);
+	TEST_ASSERT_INT_WITHIN(1, 60, store_events(3600));
+	/* Quiet hours give back what was spent, and no more. */
+	wait_us(36000 * S_US);
+	(void)rig_write_slot(0);
+	wait_us(600 * S_US);
+	TEST_ASSERT_EQUAL_INT(10, store_events(40));
 }
 
 static void test_the_hours_are_stored_without_events(void)
@@ -507,7 +523,8 @@ int main(void)
 	RUN_TEST(test_overspeed_is_logged_once_until_the_drum_rests);
 	RUN_TEST(test_modes_the_master_and_the_lock_are_logged);
 	RUN_TEST(test_parameter_commands_are_logged);
-	RUN_TEST(test_events_are_stored_together_and_seldom);
+	RUN_TEST(test_events_are_stored_together_soon_after);
+	RUN_TEST(test_many_events_do_not_wear_the_flash_out);
 	RUN_TEST(test_the_hours_are_stored_without_events);
 	RUN_TEST(test_only_tracking_counts_as_tracking);
 	RUN_TEST(test_nothing_is_written_while_tracking_or_moving);

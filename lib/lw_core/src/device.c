@@ -235,7 +235,7 @@ void lw_device_end_write(struct lw_device *device, int result)
 	if (is_params) {
 		note_saved(device, result);
 	} else {
-		lw_device_pause_journal(device);
+		lw_device_note_journal(device);
 	}
 	device->controller.storing = lw_store_saving(store);
 }
@@ -255,7 +255,8 @@ void lw_device_init(struct lw_device *device, const struct lw_device_config *con
 		.active = config->store->params,
 		.command.why.address = LW_NO_ADDRESS,
 		.now_us = now_us,
-		.journal_pause_end_us = now_us,
+		.journal_written_us = now_us,
+		.journal_paid_until_us = now_us,
 		.heard_us = now_us,
 		.heard_request_us = slave_now_us,
 		.config = config,

@@ -6,11 +6,14 @@
 /** From an event to its write: what belongs together is written together. */
 #define JOURNAL_SETTLE_US 2000000u
 
-/** From one write to the next, at least: the flash lives for a limited number of them. */
-#define JOURNAL_PAUSE_US 60000000u
+/** Mean time between two writes, at least: the flash lives for a limited number of them. */
+#define JOURNAL_PRICE_US 60000000u
 
-/** From the end of the pause to a write that only keeps the hours. */
-#define JOURNAL_HOURS_US 840000000u
+/** Ten writes may come at once: what happens before a power cut shall not wait. */
+#define JOURNAL_CREDIT_US (9u * JOURNAL_PRICE_US)
+
+/** From one write to the next that only keeps the hours. */
+#define JOURNAL_HOURS_US 900000000u
 
 static bool all_stored(const struct lw_store *store)
 {
@@ -185,9 +188,13 @@ static uint32_t count_us(uint32_t *part_us, uint64_t elapsed_us)
 	return (uint32_t)(sum_us / 1000000);
 }
 
-void lw_device_pause_journal(struct lw_device *device)
+void lw_device_note_journal(struct lw_device *device)
 {
-	device->journal_pause_end_us = device->now_us + JOURNAL_PAUSE_US;
+	device->journal_written_us = device->now_us;
+	if (device->journal_paid_until_us < device->now_us) {
+		device->journal_paid_until_us = device->now_us;
+	}
+	device->journal_paid_until_us += JOURNAL_PRICE_US;
 }
 
 void lw_device_keep_journal(struct lw_device *device, uint64_t elapsed_us)
@@ -201,8 +208,9 @@ void lw_device_keep_journal(struct lw_device *device, uint64_t elapsed_us)
 		store->counters.tracking_s += count_us(&device->tracking_us, elapsed_us);
 	}
 	due = !all_stored(store) && now_us >= device->journal_due_us;
-	due = due || now_us >= device->journal_pause_end_us + JOURNAL_HOURS_US;
-	store->journal_wanted = due && now_us >= device->journal_pause_end_us && !store->writing;
+	due = due || now_us >= device->journal_written_us + JOURNAL_HOURS_US;
+	store->journal_wanted = due && !store->writing &&
+				now_us + JOURNAL_CREDIT_US >= device->journal_paid_until_us;
 }
 
 bool lw_device_overspeed(const struct lw_device *device)

@@ -55,8 +55,8 @@ void lw_device_log_power_up(struct lw_device *device);
 /** Log what has changed since the last call. After every tick and every command. */
 void lw_device_log_changes(struct lw_device *device);
 
-/** The journal has been written, or could not be: no more for a while. */
-void lw_device_pause_journal(struct lw_device *device);
+/** The journal has been written, or could not be: that has its price. */
+void lw_device_note_journal(struct lw_device *device);
 
 /** Count the hours, and ask for the journal to be written when it is time. */
 void lw_device_keep_journal(struct lw_device *device, uint64_t elapsed_us);

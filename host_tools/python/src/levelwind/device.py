@@ -11,6 +11,7 @@ from typing import Any
 from pymodbus.client import ModbusSerialClient
 from pymodbus.exceptions import ModbusException
 from pymodbus.pdu import ModbusPDU
+from pymodbus.pdu.file_message import FileRecord
 
 from levelwind.errors import RefusedError, ToolError
 from levelwind.map_table import POINTS, Command, Fault, Point, Reason, Result
@@ -121,6 +122,16 @@ class Device:
     def value(self, name: str) -> int:
         """One value."""
         return self.read_names(name)[name]
+
+    def read_file(self, number: int, first: int, count: int) -> bytes:
+        """Records of a file (FC20), two bytes each."""
+        # pymodbus counts bytes here.
+        wanted = FileRecord(file_number=number, record_number=first, record_length=2 * count)
+        answer = self._request(
+            lambda: self._client.read_file_record([wanted], device_id=self.line.unit),
+            READ_ATTEMPTS,
+        )
+        return answer.records[0].record_data
 
     # ---- writing -------------------------------------------------------------------------------
 

@@ -106,10 +106,11 @@ struct lw_device {
 	struct lw_device_command command;
 
 	struct lw_device_seen seen;
-	uint64_t journal_due_us;       /**< when events that are not stored yet shall be */
-	uint64_t journal_pause_end_us; /**< not before, for the life of the flash */
-	uint32_t powered_us;           /**< of the present second */
-	uint32_t tracking_us;          /**< of the present second */
+	uint64_t journal_due_us;        /**< when events that are not stored yet shall be */
+	uint64_t journal_written_us;    /**< end of the last attempt, at first the power-up */
+	uint64_t journal_paid_until_us; /**< every write costs a while, for the life of the flash */
+	uint32_t powered_us;            /**< of the present second */
+	uint32_t tracking_us;           /**< of the present second */
 
 	uint64_t now_us;           /**< of the last tick */
 	uint64_t heard_request_us; /**< slave's time of the last request that was noticed */
