@@ -133,6 +133,7 @@ static void tick(struct lw_world *world)
 
 static void edge(struct lw_world *world, enum lw_edge_source source, int step)
 {
+	step = lw_controller_driver_step(&world->device.controller, step);
 	if (step != 0) {
 		lw_plant_step(&world->plant, step);
 	}

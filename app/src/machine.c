@@ -32,7 +32,8 @@ static uint32_t timer_rate_edges_per_s;
 static void step(int direction)
 {
 	if (direction != 0) {
-		lw_step_dir_step(stepper, direction);
+		lw_step_dir_step(stepper,
+				 lw_controller_driver_step(&app_device.controller, direction));
 	}
 }
 

@@ -25,6 +25,7 @@ set(LW_CORE_SOURCES
   src/pdu_diagnostics.c
   src/pdu_files.c
   src/pdu_identity.c
+  src/quadrature.c
   src/record.c
   src/rtu.c
   src/slave.c

@@ -28,7 +28,7 @@ static void start(uint8_t levels)
 
 static int update(uint8_t levels)
 {
-	return lw_quadrature_update(&quadrature, &config, levels & 2, levels & 1);
+	return lw_quadrature_update(&quadrature, levels & 2, levels & 1);
 }
 
 /** What a transition between neighbours shall count. */

@@ -71,10 +71,11 @@ void lw_controller_init(struct lw_controller *controller, const struct lw_params
 			const struct lw_derived *derived, const struct lw_inputs *inputs,
 			uint64_t now_us)
 {
+	const struct lw_quadrature_config quadrature_config = lw_params_quadrature(params);
+
 	*controller = (struct lw_controller){
 		.params = params,
 		.derived = derived,
-		.quadrature_config = lw_params_quadrature(params),
 		.limit_config = lw_params_limit_switch(params),
 		.state = LW_STATE_UNINDEXED,
 		.mode = LW_MODE_TRACK,
@@ -87,8 +88,8 @@ void lw_controller_init(struct lw_controller *controller, const struct lw_params
 	}
 	controller->windows[0] = lw_controller_track_window(controller);
 	lw_motion_init(&controller->motion, &controller->windows[0]);
-	lw_quadrature_init(&controller->quadrature, &controller->quadrature_config,
-			   inputs->encoder_a, inputs->encoder_b);
+	lw_quadrature_init(&controller->quadrature, &quadrature_config, inputs->encoder_a,
+			   inputs->encoder_b);
 	for (int side = 0; side < 2; side++) {
 		lw_limit_switch_init(&controller->limit[side], &controller->limit_config,
 				     inputs->limit[side].no_closed, inputs->limit[side].nc_closed,
@@ -100,19 +101,12 @@ void lw_controller_init(struct lw_controller *controller, const struct lw_params
 void lw_controller_configure(struct lw_controller *controller, const struct lw_params *params,
 			     const struct lw_derived *derived, bool need_index)
 {
-	const struct lw_quadrature_config old = controller->quadrature_config;
-	uint8_t inverted;
+	const struct lw_quadrature_config quadrature_config = lw_params_quadrature(params);
 
 	controller->params = params;
 	controller->derived = derived;
 	controller->limit_config = lw_params_limit_switch(params);
-	controller->quadrature_config = lw_params_quadrature(params);
-	inverted = (uint8_t)(((old.invert_a != controller->quadrature_config.invert_a) << 1) |
-			     (old.invert_b != controller->quadrature_config.invert_b));
-	if (inverted != 0) {
-		/* The levels keep their meaning. Otherwise they are the interrupt's alone. */
-		controller->quadrature.levels ^= inverted;
-	}
+	lw_quadrature_configure(&controller->quadrature, &quadrature_config);
 	if (!need_index) {
 		return;
 	}
@@ -138,23 +132,9 @@ void lw_controller_configure(struct lw_controller *controller, const struct lw_p
 	}
 }
 
-/** The step as the stepper driver's direction input wants it. */
-static int driver_step(const struct lw_controller *controller, int step)
-{
-	return controller->params->carriage_direction_invert ? -step : step;
-}
-
-int lw_controller_encoder(struct lw_controller *controller, bool a, bool b)
-{
-	const int dd =
-		lw_quadrature_update(&controller->quadrature, &controller->quadrature_config, a, b);
-
-	return dd ? driver_step(controller, lw_motion_encoder_edge(&controller->motion, dd)) : 0;
-}
-
 int lw_controller_timer_edge(struct lw_controller *controller)
 {
-	return driver_step(controller, lw_motion_timer_edge(&controller->motion));
+	return lw_motion_timer_edge(&controller->motion);
 }
 
 void lw_controller_limit(struct lw_controller *controller, int side, bool no_closed, bool nc_closed,

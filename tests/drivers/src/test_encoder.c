@@ -30,7 +30,7 @@ static bool last_b;
 static void on_edge(bool a, bool b, void *user_data)
 {
 	ARG_UNUSED(user_data);
-	net_edges += lw_quadrature_update(&quadrature, &config, a, b);
+	net_edges += lw_quadrature_update(&quadrature, a, b);
 	last_a = a;
 	last_b = b;
 	calls++;

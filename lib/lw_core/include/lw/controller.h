@@ -53,7 +53,6 @@ struct lw_controller {
 	struct lw_motion motion;         /**< see lw/motion.h */
 	struct lw_law_window windows[2]; /**< one in force, one to prepare the next */
 	struct lw_quadrature quadrature; /**< written by the encoder interrupt */
-	struct lw_quadrature_config quadrature_config;
 	struct lw_limit_switch limit[2]; /**< written by the limit-switch interrupts and ticks */
 	struct lw_limit_switch_config limit_config;
 	bool overtravel[2]; /**< written by the overtravel interrupts */
@@ -115,17 +114,40 @@ void lw_controller_init(struct lw_controller *controller, const struct lw_params
 void lw_controller_configure(struct lw_controller *controller, const struct lw_params *params,
 			     const struct lw_derived *derived, bool need_index);
 
+/** A step of the carriage as the stepper driver's direction input wants it. For interrupts. */
+static inline int lw_controller_driver_step(const struct lw_controller *controller, int step)
+{
+	return step != 0 && controller->params->carriage_direction_invert ? -step : step;
+}
+
+/**
+ * Take a drum edge that a decoder in hardware has counted in `motion.edges`. For the encoder
+ * interrupt.
+ *
+ * @param dd +1 forward, -1 backward
+ * @return the step of the carriage: +1, 0, -1; see lw_controller_driver_step()
+ */
+LW_EDGE_INLINE int lw_controller_drum_edge(struct lw_controller *controller, int dd)
+{
+	return lw_motion_edge(&controller->motion, dd);
+}
+
 /**
  * Take the encoder's levels after a transition. For the encoder interrupt.
  *
- * @return the step to give: +1, 0, -1, as the stepper driver's direction input wants it
+ * @return the step of the carriage: +1, 0, -1; see lw_controller_driver_step()
  */
-int lw_controller_encoder(struct lw_controller *controller, bool a, bool b);
+LW_EDGE_INLINE int lw_controller_encoder(struct lw_controller *controller, bool a, bool b)
+{
+	const int dd = lw_quadrature_update(&controller->quadrature, a, b);
+
+	return dd == 0 ? 0 : lw_motion_encoder_edge(&controller->motion, dd);
+}
 
 /**
  * Take one edge of the edge timer. For its interrupt.
  *
- * @return the step to give: +1, 0, -1, as the stepper driver's direction input wants it
+ * @return the step of the carriage: +1, 0, -1; see lw_controller_driver_step()
  */
 int lw_controller_timer_edge(struct lw_controller *controller);
 

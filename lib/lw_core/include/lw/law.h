@@ -21,6 +21,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/** For what an edge does: the interrupt takes it in even where code is built for size. */
+#define LW_EDGE_INLINE static inline __attribute__((always_inline))
+
 /** One microstep in the Q16.16 format of positions and slopes. */
 #define LW_USTEP 65536
 
@@ -112,7 +115,7 @@ static inline struct lw_law lw_law_at(const struct lw_law_window *window, int32_
 }
 
 /** What a forward edge adds to the slope at `at`, a place as `rel`, in a reversal. */
-static inline int32_t lw_law_slope_change(const struct lw_law *law, uint32_t at)
+LW_EDGE_INLINE int32_t lw_law_slope_change(const struct lw_law *law, uint32_t at)
 {
 	return at >= law->below_from ? law->ka : -law->ka;
 }
@@ -128,34 +131,48 @@ static inline int32_t lw_law_slope_change(const struct lw_law *law, uint32_t at)
  * @return the step to give: +1, 0 or -1
  * @retval LW_LAW_CLOSED `span` is 0, nothing was done
  */
-static inline int lw_law_short_edge(struct lw_law *law, uint32_t span, int dd)
+LW_EDGE_INLINE int lw_law_short_edge(struct lw_law *law, uint32_t span, int dd)
 {
 	const uint32_t rel = law->rel;
-	int32_t u = law->u;
+	const int32_t u = law->u;
 
-	/* Every place outside of the sweep is at least `span`, modulo 2^32. */
+	/*
+	 * Every place outside of the sweep is at least `span`, modulo 2^32. The step is the carry
+	 * out of the fraction, which is that of the position: the sweep begins at a whole
+	 * microstep.
+	 */
 	if (dd > 0) {
+		int32_t moved = u;
+
 		if (rel >= span) {
 			if (span == 0) {
 				return LW_LAW_CLOSED;
 			}
-			law->turned = lw_law_slope_change(law, rel);
-			u += law->turned;
-			law->u = u;
+
+			const int32_t change = lw_law_slope_change(law, rel);
+
+			moved += change;
+			law->u = moved;
+			law->turned = change;
 		}
-	} else {
-		u = -u;
-		if (rel + (uint32_t)u >= span) {
-			if (span == 0) {
-				return LW_LAW_CLOSED;
-			}
-			law->turned = lw_law_slope_change(law, rel + (uint32_t)u);
-			law->u -= law->turned;
-		}
+		law->rel = rel + (uint32_t)moved;
+		return ((int32_t)(uint16_t)rel + moved) >> 16;
 	}
-	law->rel = rel + (uint32_t)u;
-	/* The sweep begins at a whole microstep: the fraction of rel is that of the position. */
-	return ((int32_t)(uint16_t)rel + u) >> 16;
+
+	const uint32_t to = rel - (uint32_t)u;
+
+	if (to >= span) {
+		if (span == 0) {
+			return LW_LAW_CLOSED;
+		}
+
+		const int32_t change = lw_law_slope_change(law, to);
+
+		law->u = u - change;
+		law->turned = change;
+	}
+	law->rel = to;
+	return ((int32_t)(uint16_t)rel - u) >> 16;
 }
 
 /** Does this edge count a dwell and nothing else? Then it is taken. For lw_law_edge(). */

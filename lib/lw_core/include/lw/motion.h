@@ -145,7 +145,7 @@ int lw_motion_long_edge(struct lw_motion *motion, int dd);
  * @param dd +1 or -1
  * @return the step to give: +1, 0 or -1
  */
-static inline int lw_motion_edge(struct lw_motion *motion, int dd)
+LW_EDGE_INLINE int lw_motion_edge(struct lw_motion *motion, int dd)
 {
 	const int step = lw_law_short_edge(&motion->law, motion->law.open_span, dd);
 
@@ -165,7 +165,7 @@ static inline int lw_motion_edge(struct lw_motion *motion, int dd)
  * @param dd +1 or -1
  * @return the step to give: +1, 0 or -1
  */
-static inline int lw_motion_encoder_edge(struct lw_motion *motion, int dd)
+LW_EDGE_INLINE int lw_motion_encoder_edge(struct lw_motion *motion, int dd)
 {
 	motion->edges += (uint32_t)dd;
 	return lw_motion_edge(motion, dd);

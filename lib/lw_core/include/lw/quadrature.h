@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lw/law.h"
+
 /** How the encoder is read. */
 struct lw_quadrature_config {
 	uint8_t edges_per_pulse; /**< 4: every transition; 2: transitions of A; 1: of A while B is
@@ -19,28 +21,22 @@ struct lw_quadrature_config {
 
 /** Decoder state. */
 struct lw_quadrature {
-	uint8_t levels; /**< last levels, A in bit 1, B in bit 0 */
-	uint32_t
-		illegal_transitions; /**< both channels changed at once; written by the interrupt */
+	uint8_t levels;    /**< last levels of the pins, A in bit 1, B in bit 0 */
+	int8_t counts[16]; /**< what a transition counts, by levels before * 4 + levels now */
+	/** Both channels changed at once; written by the interrupt. */
+	uint32_t illegal_transitions;
 };
 
-/** Levels as the decoder sees them: A in bit 1, B in bit 0, inversions applied. */
-static inline uint8_t lw_quadrature_levels(const struct lw_quadrature_config *config, bool a,
-					   bool b)
-{
-	return (uint8_t)(((a != config->invert_a) << 1) | (b != config->invert_b));
-}
+/** Decode as `config` says from now on. A transition meanwhile counts as before or as after. */
+void lw_quadrature_configure(struct lw_quadrature *quadrature,
+			     const struct lw_quadrature_config *config);
 
-/** Start from the present levels. */
-static inline void lw_quadrature_init(struct lw_quadrature *quadrature,
-				      const struct lw_quadrature_config *config, bool a, bool b)
-{
-	quadrature->levels = lw_quadrature_levels(config, a, b);
-	quadrature->illegal_transitions = 0;
-}
+/** Start from the present levels of the pins. */
+void lw_quadrature_init(struct lw_quadrature *quadrature, const struct lw_quadrature_config *config,
+			bool a, bool b);
 
 /**
- * Take the levels after a transition of either channel. For the encoder interrupt.
+ * Take the levels of the pins after a transition of either channel. For the encoder interrupt.
  *
  * A leads B in the forward direction: (A,B) = 00, 10, 11, 01, 00. Every mode counts a transition
  * and its reverse alike, so a dither about one edge nets to zero. A change of both channels at
@@ -48,35 +44,17 @@ static inline void lw_quadrature_init(struct lw_quadrature *quadrature,
  *
  * @return +1 forward edge, -1 backward edge, 0 no edge in this mode
  */
-static inline int lw_quadrature_update(struct lw_quadrature *quadrature,
-				       const struct lw_quadrature_config *config, bool a, bool b)
+LW_EDGE_INLINE int lw_quadrature_update(struct lw_quadrature *quadrature, bool a, bool b)
 {
-	const uint8_t levels = lw_quadrature_levels(config, a, b);
-	const uint8_t changed = levels ^ quadrature->levels;
-	/* Forward: A changes and then differs from B, or B changes and then equals A. */
-	const bool equal = (levels >> 1) == (levels & 1);
-	int dd;
+	const unsigned int now = ((unsigned int)a << 1) | b;
+	const unsigned int before = quadrature->levels;
+	const int dd = quadrature->counts[before << 2 | now];
 
-	quadrature->levels = levels;
-	if (changed == 3) {
+	quadrature->levels = (uint8_t)now;
+	if (dd == 0 && (before ^ now) == 3) {
 		quadrature->illegal_transitions++;
-		return 0;
 	}
-	if (changed == 0) {
-		return 0;
-	}
-	if (changed == 2) {
-		if (config->edges_per_pulse == 1 && (levels & 1)) {
-			return 0;
-		}
-		dd = equal ? -1 : 1;
-	} else {
-		if (config->edges_per_pulse != 4) {
-			return 0;
-		}
-		dd = equal ? 1 : -1;
-	}
-	return config->invert_direction ? -dd : dd;
+	return dd;
 }
 
 #endif /* LW_QUADRATURE_H */
