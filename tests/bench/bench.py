@@ -1,4 +1,7 @@
-"""Measure, against the budgets: `./dev bench [--json FILE]`. Exit status 1 if one is not met."""
+"""Measure, against the budgets: `./dev bench [--json FILE] [--record]`.
+
+Exit status 1 if one is not met, or if an edge has become dearer than recorded.
+"""
 
 import argparse
 import json
@@ -15,6 +18,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent.parent))
 sys.path.insert(0, str(Path(__file__).parent.parent / "integration"))
 
+import edge_cost
 from latency import ANSWER_MAX_MS, BAUD, REGISTERS, of_target
 from levelwind.device import Device, Line
 from levelwind.map_table import POINTS, Command
@@ -156,8 +160,8 @@ def law(case: str) -> Result:
         subprocess.run(
             [
                 *("valgrind", "--tool=callgrind", f"--callgrind-out-file={out}"),
-                *("--toggle-collect=lw_controller_encoder", "--dump-instr=no"),
-                *("--dump-after=lw_controller_encoder", "--combine-dumps=yes"),
+                *("--toggle-collect=encoder_interrupt", "--dump-instr=no"),
+                *("--dump-after=encoder_interrupt", "--combine-dumps=yes"),
                 *(find("lw_law_bench"), case),
             ],
             check=True,
@@ -170,10 +174,23 @@ def law(case: str) -> Result:
     return result(f"edge: {case.replace('_', ' ')}", "core", options, counts, "instructions")
 
 
+def arm(record: bool) -> list[str]:
+    """Instructions per edge on Arm, beside the record; what is dearer, or misses its target."""
+    if not edge_cost.available():
+        print(f"\nno compiler for Arm: {edge_cost.HOW_TO_INSTALL}")
+        return []
+    costs, sizes = edge_cost.measure_all(tuple(edge_cost.CPUS))
+    print("\n" + edge_cost.table(costs, sizes))
+    if record:
+        edge_cost.write_record(costs, sizes)
+    return edge_cost.failures(costs, edge_cost.recorded())
+
+
 def main() -> int:
     """Print a table, write JSON, say what is not met."""
     parser = argparse.ArgumentParser(prog="./dev bench", description=__doc__)
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the results here, too")
+    parser.add_argument("--record", action="store_true", help="compare with these from now on")
     arguments = parser.parse_args()
 
     targets = ["sim", "native_sim"] if NATIVE_SIM.exists() else ["sim"]
@@ -204,6 +221,7 @@ def main() -> int:
     for late in (r for r in results if r.name == "answer, the slave's time"):
         if late.max > ANSWER_MAX_MS:
             failures.append(f"{late.target} has answered after more than {ANSWER_MAX_MS:g} ms")
+    failures += arm(arguments.record)
     for failure in failures:
         print(f"bench: {failure}", file=sys.stderr)
     return 1 if failures else 0

@@ -2,6 +2,8 @@
  * What edge_cost.py counts the instructions of: the law alone, and whole encoder interrupts around
  * the core's real path, as they would be on an STM32F446. Its registers are plain memory here.
  */
+#include <stddef.h>
+
 #include "lw/controller.h"
 
 /* Where these registers are is said by symbols that the linker is given (edge_cost.py). */
@@ -32,6 +34,10 @@ extern volatile uint32_t dir;         /**< bit-band alias of one output */
 static struct lw_params params;
 static struct lw_derived derived;
 struct lw_controller controller;
+
+/** For edge_cost.py. */
+const uint32_t law_offset = offsetof(struct lw_controller, motion.law);
+const uint32_t law_size = sizeof(struct lw_law);
 
 int setup(int32_t dwell_millirev, int32_t m, int32_t u);
 int law_forward(struct lw_law *law);

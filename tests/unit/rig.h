@@ -117,6 +117,7 @@ static inline void rig_place(int32_t usteps)
 static inline void rig_step(int step)
 {
 	TEST_ASSERT_TRUE(-1 <= step && step <= 1);
+	step = lw_controller_driver_step(rig.controller, step);
 	if (step != 0 && !rig.stalled) {
 		rig_place(rig.carriage_usteps + step);
 	}
