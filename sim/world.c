@@ -32,7 +32,9 @@ static void load(struct lw_world *world)
 static void power_up(struct lw_world *world, uint64_t slave_now_us)
 {
 	const struct lw_plant_pins *pins = &world->plant.pins;
-	struct lw_inputs inputs = {.encoder_a = pins->encoder_a, .encoder_b = pins->encoder_b};
+	struct lw_inputs inputs = {.encoder_a = pins->encoder_a,
+				   .encoder_b = pins->encoder_b,
+				   .stepper_alarm = pins->stepper_alarm};
 
 	for (int side = 0; side < 2; side++) {
 		inputs.limit[side].no_closed = pins->limit[side].no_closed;
@@ -155,6 +157,12 @@ static void plant_event(struct lw_world *world)
 	}
 	if (!(changed & ~(uint32_t)LW_PLANT_ENCODER)) {
 		return;
+	}
+	if ((changed & LW_PLANT_ENCODER_INDEX) && pins->encoder_index) {
+		lw_controller_encoder_index(controller);
+	}
+	if (changed & LW_PLANT_STEPPER_ALARM) {
+		lw_controller_stepper_alarm(controller, pins->stepper_alarm);
 	}
 	for (int side = 0; side < 2; side++) {
 		if (changed & (side == LW_PLUS ? LW_PLANT_LIMIT_PLUS : LW_PLANT_LIMIT_MINUS)) {

@@ -1,9 +1,8 @@
 #include "limits.h"
 
-#include <zephyr/task_wdt/task_wdt.h>
-
 #include "app.h"
 #include "lw/drivers/limit_switch.h"
+#include "watch.h"
 
 /** A bouncing switch changes its contacts a few dozen times in as many hundred microseconds. */
 #define CHANGES_MAX 32
@@ -74,17 +73,17 @@ static void catch_up(void)
 	}
 }
 
-static void run(void *channel, void *unused1, void *unused2)
+static void run(void *unused1, void *unused2, void *unused3)
 {
 	struct change change;
 
 	ARG_UNUSED(unused1);
 	ARG_UNUSED(unused2);
+	ARG_UNUSED(unused3);
 	for (;;) {
-		const int ret =
-			k_msgq_get(&changes, &change, K_MSEC(CONFIG_LW_WATCHDOG_TIMEOUT_MS / 2));
+		const int ret = k_msgq_get(&changes, &change, WATCH_PERIOD);
 
-		task_wdt_feed((int)(intptr_t)channel);
+		watch_report(WATCH_LIMITS);
 		k_mutex_lock(&app_lock, K_FOREVER);
 		if (ret == 0) {
 			take(&change);
@@ -98,18 +97,16 @@ static void run(void *channel, void *unused1, void *unused2)
 
 int limits_start(void)
 {
-	const int channel = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, NULL, NULL);
+	int ret = watch_add(WATCH_LIMITS);
 
-	if (channel < 0) {
-		return channel;
+	if (ret) {
+		return ret;
 	}
-	k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), run,
-			(void *)(intptr_t)channel, NULL, NULL, APP_PRIORITY_LIMITS, 0, K_NO_WAIT);
+	k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), run, NULL, NULL, NULL,
+			APP_PRIORITY_LIMITS, 0, K_NO_WAIT);
 	k_thread_name_set(&thread, "limits");
 	for (int side = 0; side < 2; side++) {
-		const int ret =
-			lw_contacts_start(switches[side], on_change, (void *)(intptr_t)side);
-
+		ret = lw_contacts_start(switches[side], on_change, (void *)(intptr_t)side);
 		if (ret) {
 			return ret;
 		}

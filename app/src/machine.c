@@ -37,10 +37,48 @@ static void step(int direction)
 	}
 }
 
+/* Written by the encoder interrupt. */
+static uint32_t encoder_interrupt_max_cycles;
+
+/**
+ * Cycles of the processor, counted down. The system timer tells them in one read, and runs round
+ * only once in many interrupts' time.
+ */
+static inline uint32_t cycles_left(void)
+{
+#ifdef CONFIG_CORTEX_M_SYSTICK
+	return SysTick->VAL;
+#else
+	return 0; /* no time passes on native_sim */
+#endif
+}
+
+static inline uint32_t cycles_between(uint32_t before, uint32_t after)
+{
+#ifdef CONFIG_CORTEX_M_SYSTICK
+	return before >= after ? before - after : before + SysTick->LOAD + 1 - after;
+#else
+	return before - after;
+#endif
+}
+
 static void on_encoder(bool a, bool b, void *user_data)
 {
+	const uint32_t before = cycles_left();
+	uint32_t taken;
+
 	ARG_UNUSED(user_data);
 	step(lw_controller_encoder(&app_device.controller, a, b));
+	taken = cycles_between(before, cycles_left());
+	if (taken > encoder_interrupt_max_cycles) {
+		encoder_interrupt_max_cycles = taken;
+	}
+}
+
+static void on_encoder_index(void *user_data)
+{
+	ARG_UNUSED(user_data);
+	lw_controller_encoder_index(&app_device.controller);
 }
 
 static void on_edge_timer(const struct device *dev, void *user_data)
@@ -76,10 +114,23 @@ int machine_check(void)
 	return 0;
 }
 
+/** An alarm that is not wired is none. */
+static int read_alarm(bool *alarm)
+{
+	const int ret = lw_step_dir_alarm(stepper);
+
+	*alarm = ret > 0;
+	return ret == -ENOTSUP ? 0 : MIN(ret, 0);
+}
+
 int machine_read(struct lw_inputs *inputs)
 {
 	struct lw_contacts contacts;
 	int ret = lw_encoder_read(encoder, &inputs->encoder_a, &inputs->encoder_b);
+
+	if (ret == 0) {
+		ret = read_alarm(&inputs->stepper_alarm);
+	}
 
 	for (int side = 0; side < 2 && ret == 0; side++) {
 		ret = lw_contacts_read(limits[side], &contacts);
@@ -100,10 +151,32 @@ int machine_start(void)
 {
 	int ret = lw_encoder_start(encoder, on_encoder, NULL);
 
+	if (ret == 0) {
+		ret = lw_encoder_start_index(encoder, on_encoder_index, NULL);
+		ret = ret == -ENOTSUP ? 0 : ret;
+	}
 	for (int side = 0; side < 2 && ret == 0; side++) {
 		ret = lw_contacts_start(overtravels[side], on_overtravel, (void *)(intptr_t)side);
 	}
 	return ret;
+}
+
+int machine_poll(void)
+{
+	bool alarm;
+	const int ret = read_alarm(&alarm);
+
+	if (ret == 0) {
+		lw_controller_stepper_alarm(&app_device.controller, alarm);
+	}
+	app_device.health.encoder_interrupt_max_ns =
+		k_cyc_to_ns_ceil32(encoder_interrupt_max_cycles);
+	return ret;
+}
+
+void machine_stop(void)
+{
+	(void)lw_step_dir_enable(stepper, false);
 }
 
 static int set_timer_rate(uint32_t rate_edges_per_s)

@@ -34,6 +34,18 @@ int machine_read(struct lw_inputs *inputs);
 int machine_start(void);
 
 /**
+ * Tell the controller what no interrupt tells: the stepper driver's alarm. Called by the supervisor
+ * before every tick, with app_lock held.
+ *
+ * @retval 0 done
+ * @retval <0 errno of a driver
+ */
+int machine_poll(void);
+
+/** Take the current from the stepper, whatever the controller wants. Interrupt safe. */
+void machine_stop(void);
+
+/**
  * Do what the controller asks for outside of its interrupts: motor current, edge timer. Called by
  * the supervisor after every tick, with app_lock held.
  *

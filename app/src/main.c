@@ -5,13 +5,13 @@
 
 #include <zephyr/drivers/gpio.h>
 #include <zephyr/logging/log.h>
-#include <zephyr/task_wdt/task_wdt.h>
 
 #include "app.h"
 #include "limits.h"
 #include "machine.h"
 #include "modbus.h"
 #include "storage.h"
+#include "watch.h"
 #ifdef CONFIG_LW_SIMULATED_MACHINE
 #include "simulated_machine.h"
 #endif
@@ -72,6 +72,7 @@ static int start(void)
 {
 	int ret = machine_check();
 
+	config.watchdog_reset = watch_has_restarted();
 	if (ret == 0) {
 		ret = read_default_settings(&config.default_line);
 	}
@@ -96,14 +97,20 @@ static int start(void)
 	return ret ? ret : modbus_start();
 }
 
+/** Ticks between two looks at a stack. */
+#define MEASURE_TICKS 200
+
 /** One tick, and what follows from it outside of the core. */
 static int supervise(void)
 {
-	int ret = 0;
+	static uint32_t ticks;
+	int ret;
 
 	k_mutex_lock(&app_lock, K_FOREVER);
+	ret = machine_poll();
 #ifdef CONFIG_LW_SIMULATED_MACHINE
-	if (simulated_machine_power_cut()) {
+	if (ret == 0 && simulated_machine_power_cut()) {
+		config.watchdog_reset = false;
 		ret = power_up();
 	}
 	simulated_machine_note_indexed(app_device.controller.indexed);
@@ -115,26 +122,30 @@ static int supervise(void)
 		ret = machine_serve_outputs();
 	}
 	k_mutex_unlock(&app_lock);
+	if (++ticks % MEASURE_TICKS == 0) {
+		watch_measure_stacks(&app_device.health);
+	}
 	return ret;
 }
 
 int main(void)
 {
 	struct k_timer ticks;
-	int channel = -1;
 	int ret;
 
 	k_thread_priority_set(k_current_get(), APP_PRIORITY_SUPERVISOR);
-	ret = task_wdt_init(NULL);
+	ret = watch_start();
 	if (ret == 0) {
-		channel = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, NULL, NULL);
-		ret = channel < 0 ? channel : start();
+		ret = watch_add(WATCH_SUPERVISOR);
+	}
+	if (ret == 0) {
+		ret = start();
 	}
 	k_timer_init(&ticks, NULL, NULL);
 	k_timer_start(&ticks, K_USEC(LW_CONTROLLER_TICK_US), K_USEC(LW_CONTROLLER_TICK_US));
 	while (ret == 0) {
 		(void)k_timer_status_sync(&ticks);
-		task_wdt_feed(channel);
+		watch_report(WATCH_SUPERVISOR);
 		ret = supervise();
 	}
 	/* A driver has failed. The watchdog restarts what cannot go on. */

@@ -6,9 +6,9 @@
 #include <zephyr/drivers/gpio.h>
 #include <zephyr/drivers/uart.h>
 #include <zephyr/logging/log.h>
-#include <zephyr/task_wdt/task_wdt.h>
 
 #include "app.h"
+#include "watch.h"
 
 LOG_MODULE_DECLARE(levelwind);
 
@@ -102,7 +102,7 @@ static size_t wait_for_frame(uint8_t bytes[LW_RTU_FRAME_MAX + 1], uint64_t *last
 	const uint32_t silence_us = app_device.slave_config.rtu.silence_us;
 	uint32_t wait_us = silence_us;
 
-	if (k_sem_take(&rx_begun, K_MSEC(CONFIG_LW_WATCHDOG_TIMEOUT_MS / 2)) != 0) {
+	if (k_sem_take(&rx_begun, WATCH_PERIOD) != 0) {
 		return 0;
 	}
 	for (;;) {
@@ -164,15 +164,15 @@ static int configure_line(const struct lw_line *line)
 #endif
 
 /** Take tx_free. The longest answer takes more than two seconds at 1,200 baud. */
-static void wait_until_sent(int channel)
+static void wait_until_sent(void)
 {
-	while (k_sem_take(&tx_free, K_MSEC(CONFIG_LW_WATCHDOG_TIMEOUT_MS / 2)) != 0) {
-		task_wdt_feed(channel);
+	while (k_sem_take(&tx_free, WATCH_PERIOD) != 0) {
+		watch_report(WATCH_MODBUS);
 	}
 }
 
 /** Make the UART as the device wants it, once nothing is being sent. */
-static void follow_line_settings(int channel)
+static void follow_line_settings(void)
 {
 	struct lw_line line;
 
@@ -182,7 +182,7 @@ static void follow_line_settings(int channel)
 	if (line.baud_rate == configured.baud_rate && line.format == configured.format) {
 		return;
 	}
-	wait_until_sent(channel);
+	wait_until_sent();
 	if (configure_line(&line) != 0) {
 		LOG_ERR("the UART refuses %u baud, format %d", line.baud_rate, (int)line.format);
 	}
@@ -190,25 +190,25 @@ static void follow_line_settings(int channel)
 	configured = line;
 }
 
-static void run(void *watchdog_channel, void *unused1, void *unused2)
+static void run(void *unused1, void *unused2, void *unused3)
 {
-	const int channel = (int)(intptr_t)watchdog_channel;
 	uint8_t bytes[LW_RTU_FRAME_MAX + 1];
 	uint64_t last_byte_us;
 
 	ARG_UNUSED(unused1);
 	ARG_UNUSED(unused2);
+	ARG_UNUSED(unused3);
 	for (;;) {
-		follow_line_settings(channel);
+		follow_line_settings();
 
 		const size_t count = wait_for_frame(bytes, &last_byte_us);
 		struct lw_slave *slave = &app_device.slave;
 
-		task_wdt_feed(channel);
+		watch_report(WATCH_MODBUS);
 		if (count == 0) {
 			continue;
 		}
-		wait_until_sent(channel);
+		wait_until_sent();
 		k_mutex_lock(&app_lock, K_FOREVER);
 		lw_slave_receive(slave, bytes, count, last_byte_us);
 		tx.length = lw_slave_poll(slave, app_now_us(), tx.bytes);
@@ -227,7 +227,6 @@ static void run(void *watchdog_channel, void *unused1, void *unused2)
 
 int modbus_start(void)
 {
-	int channel;
 	int ret;
 
 	if (!device_is_ready(uart) ||
@@ -244,15 +243,14 @@ int modbus_start(void)
 	if (ret == 0) {
 		ret = uart_irq_callback_user_data_set(uart, on_uart, NULL);
 	}
+	if (ret == 0) {
+		ret = watch_add(WATCH_MODBUS);
+	}
 	if (ret) {
 		return ret;
 	}
-	channel = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, NULL, NULL);
-	if (channel < 0) {
-		return channel;
-	}
-	k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), run,
-			(void *)(intptr_t)channel, NULL, NULL, APP_PRIORITY_MODBUS, 0, K_NO_WAIT);
+	k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), run, NULL, NULL, NULL,
+			APP_PRIORITY_MODBUS, 0, K_NO_WAIT);
 	k_thread_name_set(&thread, "modbus");
 	uart_irq_rx_enable(uart);
 	return 0;

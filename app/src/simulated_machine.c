@@ -11,9 +11,11 @@
 
 static const struct gpio_dt_spec encoder_a = MACHINE_PIN(encoder, a_gpios);
 static const struct gpio_dt_spec encoder_b = MACHINE_PIN(encoder, b_gpios);
+static const struct gpio_dt_spec encoder_index = MACHINE_PIN(encoder, index_gpios);
 static const struct gpio_dt_spec step = MACHINE_PIN(stepper, step_gpios);
 static const struct gpio_dt_spec dir = MACHINE_PIN(stepper, dir_gpios);
 static const struct gpio_dt_spec enable = MACHINE_PIN(stepper, enable_gpios);
+static const struct gpio_dt_spec alarm = MACHINE_PIN(stepper, alarm_gpios);
 static const struct {
 	struct gpio_dt_spec no;
 	struct gpio_dt_spec nc;
@@ -35,6 +37,8 @@ static struct gpio_callback outputs;
 static bool step_level;
 static bool bringing; /**< events are being brought up to now */
 static bool was_indexed;
+static bool has_current;
+static enum lw_bench_restart restart;
 
 static void set_input(const struct gpio_dt_spec *pin, bool active)
 {
@@ -64,6 +68,9 @@ static void set_encoder(uint32_t changed)
 		set_input(&encoder_a, plant.pins.encoder_a);
 	} else if (changed & LW_PLANT_ENCODER_B) {
 		set_input(&encoder_b, plant.pins.encoder_b);
+	}
+	if (changed & LW_PLANT_ENCODER_INDEX) {
+		set_input(&encoder_index, plant.pins.encoder_index);
 	}
 }
 
@@ -99,6 +106,9 @@ static void bring_events(void)
 
 		set_encoder(changed);
 		set_switches(changed);
+		if (changed & LW_PLANT_STEPPER_ALARM) {
+			set_input(&alarm, plant.pins.stepper_alarm);
+		}
 	}
 	bringing = false;
 }
@@ -121,7 +131,8 @@ static void on_output(const struct device *port, struct gpio_callback *callback,
 		step_level = level;
 	}
 	if (pins & BIT(enable.pin)) {
-		lw_plant_enable(&plant, output(&enable));
+		has_current = output(&enable);
+		lw_plant_enable(&plant, has_current);
 	}
 	irq_unlock(key);
 }
@@ -162,12 +173,15 @@ int simulated_machine_start(void)
 		return ret;
 	}
 	lw_plant_bench_init(&bench, &plant);
+	bench.threads = true;
+	bench.registers.bench_restart = restart;
 	bench_section = lw_plant_bench_section(&bench);
 	guarded_section = bench_section;
 	guarded_section.image = image;
 	guarded_section.store = store;
 
-	set_encoder(LW_PLANT_ENCODER);
+	set_encoder(LW_PLANT_ENCODER | LW_PLANT_ENCODER_INDEX);
+	set_input(&alarm, plant.pins.stepper_alarm);
 	set_switches(UINT32_MAX);
 	gpio_init_callback(&outputs, on_output, BIT(step.pin) | BIT(enable.pin));
 	ret = gpio_add_callback(step.port, &outputs);
@@ -192,6 +206,25 @@ void simulated_machine_note_indexed(bool indexed)
 		irq_unlock(key);
 	}
 	was_indexed = indexed;
+}
+
+bool simulated_machine_has_current(void)
+{
+	return has_current;
+}
+
+void simulated_machine_note_restart(enum lw_bench_restart noted)
+{
+	restart = noted;
+}
+
+void simulated_machine_hang(int thread)
+{
+	/* The bench counts threads from 1. Waiting busily, because else no time passes on
+	 * native_sim. */
+	while ((int)bench.hang == thread + 1) {
+		k_busy_wait(USEC_PER_MSEC);
+	}
 }
 
 bool simulated_machine_power_cut(void)

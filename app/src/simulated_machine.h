@@ -13,6 +13,7 @@
 #include <stdbool.h>
 
 #include "lw/bank.h"
+#include "lw/map.h"
 
 /**
  * Start the machine: its pins get their levels, and time begins. Not for interrupt context.
@@ -30,6 +31,15 @@ const struct lw_bank_section *simulated_machine_section(void);
  * of the stepper counts as one.
  */
 void simulated_machine_note_indexed(bool indexed);
+
+/** Does the stepper have current, as its driver sees it? Interrupt safe. */
+bool simulated_machine_has_current(void);
+
+/** Tell the bench how the last restart was. Before simulated_machine_start(). */
+void simulated_machine_note_restart(enum lw_bench_restart restart);
+
+/** Hang for ever if the bench wants it of this thread (enum watch_thread). */
+void simulated_machine_hang(int thread);
 
 /** Has the bench asked for a restart of the controller? Tells it once. */
 bool simulated_machine_power_cut(void);

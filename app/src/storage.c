@@ -5,6 +5,7 @@
 #include <zephyr/settings/settings.h>
 
 #include "app.h"
+#include "watch.h"
 
 #define TREE "levelwind"
 
@@ -36,12 +37,25 @@ static void write_slot(struct k_work *work)
 
 static K_WORK_DEFINE(write_work, write_slot);
 
+static void report(struct k_work *work)
+{
+	watch_report(WATCH_STORAGE);
+	(void)k_work_schedule_for_queue(&queue, k_work_delayable_from_work(work), WATCH_PERIOD);
+}
+
+static K_WORK_DELAYABLE_DEFINE(report_work, report);
+
 int storage_start(void)
 {
 	const struct k_work_queue_config config = {.name = "storage"};
+	const int ret = watch_add(WATCH_STORAGE);
 
+	if (ret) {
+		return ret;
+	}
 	k_work_queue_start(&queue, stack, K_THREAD_STACK_SIZEOF(stack), APP_PRIORITY_STORAGE,
 			   &config);
+	(void)k_work_schedule_for_queue(&queue, &report_work, K_NO_WAIT);
 	return settings_subsys_init();
 }
 

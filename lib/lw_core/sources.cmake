@@ -11,6 +11,7 @@ set(LW_CORE_SOURCES
   src/device_events.c
   src/device_line.c
   src/device_status.c
+  src/encoder_index.c
   src/homing.c
   src/law.c
   src/limit_switch.c

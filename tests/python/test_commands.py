@@ -125,3 +125,26 @@ def test_notices_are_the_texts_of_the_map(bit: Flag):
     status = dict.fromkeys(POINTS, 0) | {"flags": 1 << bit}
     rows = render(status, Travel(-1, -1, 1, 1)).renderable.renderables[2]
     assert bit.text in str(list(rows.columns[1].cells)[-1])
+
+
+def status_rows(**values: int) -> dict[str, str]:
+    """The rows of the operator's view, as text by their heading."""
+    status = dict.fromkeys(POINTS, 0) | values
+    rows = render(status, Travel(-1, -1, 1, 1)).renderable.renderables[2]
+    headings, texts = (list(column.cells) for column in rows.columns)
+    return {str(heading): str(text) for heading, text in zip(headings, texts, strict=True)}
+
+
+def test_what_the_firmware_measures_is_shown_where_it_is_measured() -> None:
+    rows = status_rows()
+    assert rows["Encoder"] == "0 late interrupts, no index pulse yet"
+    assert "Stack free" not in rows
+    rows = status_rows(
+        encoder_interrupt_max_ns=12_340,
+        late_interrupts=3,
+        encoder_index_pulses=7,
+        missed_edges=2,
+        stack_free_modbus_bytes=700,
+    )
+    assert rows["Encoder"] == "interrupt 12.3 us at most, 3 late interrupts, 2 missed edges"
+    assert "modbus 700," in rows["Stack free"]

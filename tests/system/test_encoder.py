@@ -158,3 +158,33 @@ def test_back_and_forth_by_the_same_edges_restores_all():
         world.drum(-200 if world.value("pattern_edges") > 0 else 200, edges_per_s2=1e6)
         world.run(0.0005)
     assert world.read("m", "u", "position_um") == at_start
+
+
+@pytest.mark.parametrize("speed", [20_000, -20_000])
+@pytest.mark.parametrize("edges_per_pulse", MODES)
+def test_lost_pulses_are_found_by_the_index(edges_per_pulse: int, speed: int):
+    # One microstep is the most that an edge may ask for: a finer pitch where edges are fewer.
+    world = World(encoder_edges_per_pulse=edges_per_pulse, pitch_um=3_000).index()
+    world.drum(speed)
+    world.run(3.0)
+    assert world.value("encoder_index_pulses") > 20
+    assert world.value("missed_edges") == 0
+    bench(world, BenchCommand.LOSE_PULSES, 3)
+    world.run(0.2)
+    assert world.value("missed_edges") == 3 * edges_per_pulse
+    world.drum(-speed)
+    world.run(6.0)
+    world.stop_drum()
+    assert world.value("missed_edges") == 3 * edges_per_pulse
+    assert world.value("late_interrupts") == 0
+
+
+def test_dither_at_the_index_is_not_a_missed_edge():
+    world = World().index()
+    for turn in range(40):
+        world.drum(2_000 if turn % 2 else -2_000)
+        bench(world, BenchCommand.DITHER, 50)
+        world.run(0.3 + turn / 100)
+    world.stop_drum()
+    assert world.value("encoder_index_pulses") > 20
+    assert world.value("missed_edges") == 0

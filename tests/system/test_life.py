@@ -280,6 +280,34 @@ def test_out_of_overtravel_by_jogging(side: str, sign: int):
     assert world.index().permit
 
 
+def test_stepper_alarm_in_a_launch():
+    world = World().index()
+    world.drum(20_000)
+    world.run(1.0)
+    world.write(bench_stepper_alarm=1)
+    world.run(0.002)
+    assert (world.state, world.fault) == (State.FAULT, Fault.STEPPER_ALARM)
+    assert world.value("launch_inhibit") & 1 << LaunchInhibit.STEPPER_ALARM
+    steps = world.value("steps")
+    world.run(1.0)
+    assert world.value("steps") == steps
+    world.stop_drum()
+    with pytest.raises(RequestRefusedError, match="06, cause_present"):
+        world.command(Command.CLEAR_FAULT)
+    world.write(bench_stepper_alarm=0)
+    world.run(0.002)
+    world.command(Command.CLEAR_FAULT)
+    assert world.index().permit
+
+
+def test_stepper_alarm_at_power_up():
+    world = World()
+    world.write(bench_stepper_alarm=1, bench_command=BenchCommand.POWER_CUT)
+    world.run(0.01)
+    assert world.fault == Fault.STEPPER_ALARM
+    assert not world.permit
+
+
 def test_too_many_recoveries_stop_the_launch():
     world = World(los_recoveries_max=2).index()
     world.drum(20_000)

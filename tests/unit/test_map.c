@@ -198,7 +198,7 @@ static void test_coils_run_a_command_or_jog(void)
 static void test_discrete_inputs_fit_into_the_register_pair_flags(void)
 {
 	TEST_ASSERT_LESS_OR_EQUAL_UINT(32, LW_MAP_DISCRETES_COUNT);
-	TEST_ASSERT_EQUAL_INT(LW_MAP_DISCRETES_COUNT - 1, LW_FLAG_LINE_TRIAL);
+	TEST_ASSERT_EQUAL_INT(LW_MAP_DISCRETES_COUNT - 1, LW_FLAG_WATCHDOG_RESET);
 	for (uint16_t i = 0; i < LW_MAP_DISCRETES_COUNT; i++) {
 		TEST_ASSERT_EQUAL_UINT16(i, lw_map_discretes[i].address);
 		TEST_ASSERT_EQUAL_UINT16(i, lw_map_discretes[i].offset);

@@ -49,6 +49,29 @@ static void test_b_leads_a_when_paying_out(void)
 	TEST_ASSERT_EQUAL_INT64(-4, rig_truth(&rig).drum_transitions);
 }
 
+static void test_index_once_per_encoder_revolution(void)
+{
+	const int64_t rev = TRANSITIONS_PER_DRUM_REV / 4;
+
+	TEST_ASSERT_EQUAL_INT(0, lw_plant_drum_target(&rig.plant, 60000));
+	for (int i = 0; i < 6; i++) {
+		TEST_ASSERT_TRUE(rig_run_to_change(&rig, LW_PLANT_ENCODER_INDEX, S));
+		TEST_ASSERT_TRUE(rig.plant.pins.encoder_index);
+		TEST_ASSERT_EQUAL_INT64(rev / 2 + i * rev, rig_truth(&rig).drum_transitions);
+		TEST_ASSERT_TRUE(rig_run_to_change(&rig, LW_PLANT_ENCODER_INDEX, S));
+		TEST_ASSERT_FALSE(rig.plant.pins.encoder_index);
+		TEST_ASSERT_EQUAL_INT64(rev / 2 + i * rev + 1, rig_truth(&rig).drum_transitions);
+	}
+	TEST_ASSERT_EQUAL_INT(0, lw_plant_drum_target(&rig.plant, -60000));
+	for (int i = 5; i >= -5; i--) {
+		TEST_ASSERT_TRUE(rig_run_to_change(&rig, LW_PLANT_ENCODER_INDEX, S));
+		TEST_ASSERT_TRUE(rig.plant.pins.encoder_index);
+		TEST_ASSERT_EQUAL_INT64(rev / 2 + i * rev, rig_truth(&rig).drum_transitions);
+		TEST_ASSERT_TRUE(rig_run_to_change(&rig, LW_PLANT_ENCODER_INDEX, S));
+		TEST_ASSERT_FALSE(rig.plant.pins.encoder_index);
+	}
+}
+
 static void test_pins_tell_the_truth_through_drum_reversals(void)
 {
 	/* Rocking by less than a transition to many revolutions, about ever different positions. */
@@ -270,6 +293,7 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_a_leads_b_when_hauling_in);
 	RUN_TEST(test_b_leads_a_when_paying_out);
+	RUN_TEST(test_index_once_per_encoder_revolution);
 	RUN_TEST(test_pins_tell_the_truth_through_drum_reversals);
 	RUN_TEST(test_drum_returns_over_the_same_transitions);
 	RUN_TEST(test_transitions_are_evenly_spaced_at_constant_speed);

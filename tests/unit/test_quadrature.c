@@ -59,6 +59,7 @@ static void test_all_transitions_in_all_modes(void)
 					from == to || illegal ? 0 : expected(from, to, modes[mode]),
 					update(to));
 				TEST_ASSERT_EQUAL_UINT32(illegal, quadrature.illegal_transitions);
+				TEST_ASSERT_EQUAL_UINT32(from == to, quadrature.late_interrupts);
 				TEST_ASSERT_EQUAL_UINT8(to, quadrature.levels);
 			}
 		}

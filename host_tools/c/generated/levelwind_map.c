@@ -73,6 +73,10 @@ static const struct levelwind_value fault_values[] = {
 		"The drum turned faster than overspeed_trip_edges_per_s, the stepper cannot follow",
 	},
 	{11, "los_limit", "More losses of synchronization in one launch than los_recoveries_max"},
+	{
+		12, "stepper_alarm",
+		"The stepper driver reports an alarm: steps may be lost. Look at the driver, then index again",
+	},
 };
 
 static const struct levelwind_value command_values[] = {
@@ -322,6 +326,10 @@ static const struct levelwind_value flag_values[] = {
 		29, "line_trial",
 		"Line settings are on trial: any valid request to this unit confirms them",
 	},
+	{
+		30, "watchdog_reset",
+		"The last restart was made by the watchdog: a part of the firmware had stopped",
+	},
 };
 
 static const struct levelwind_value launch_inhibit_values[] = {
@@ -333,6 +341,7 @@ static const struct levelwind_value launch_inhibit_values[] = {
 	{5, "overspeed", "The drum tripped the overspeed limit"},
 	{6, "master_lost", "The Modbus master is silent"},
 	{7, "correction", "A re-index correction is pending"},
+	{8, "stepper_alarm", "The stepper driver reports an alarm"},
 };
 
 static const int32_t allowed_encoder_edges_per_pulse[] = {1, 2, 4};
@@ -749,21 +758,21 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "fault", .unit = "", .text = "Why the controller stopped",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 102,
 		.words = 1, .offset = offsetof(struct levelwind_status, fault),
-		.values = fault_values, .value_count = 12,
+		.values = fault_values, .value_count = 13,
 	},
 	{
 		.name = "flags", .unit = "",
 		.text = "All discrete inputs in one pair, bit number = discrete input address",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 103,
 		.words = 2, .offset = offsetof(struct levelwind_status, flags),
-		.values = flag_values, .value_count = 30,
+		.values = flag_values, .value_count = 31,
 	},
 	{
 		.name = "launch_inhibit", .unit = "",
 		.text = "Why a launch is not permitted; 0 means launch permit",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 105,
 		.words = 1, .offset = offsetof(struct levelwind_status, launch_inhibit),
-		.values = launch_inhibit_values, .value_count = 8,
+		.values = launch_inhibit_values, .value_count = 9,
 	},
 	{
 		.name = "position_um", .unit = "um", .text = "Carriage position",
@@ -1013,6 +1022,62 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 332,
 		.words = 1, .offset = offsetof(struct levelwind_status, slot_3),
 		.values = slot_state_values, .value_count = 6,
+	},
+	{
+		.name = "encoder_interrupt_max_ns", .unit = "ns",
+		.text = "Longest time in the encoder interrupt since power-up, without the operating system's share (0: not measured)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 340,
+		.words = 2, .offset = offsetof(struct levelwind_status, encoder_interrupt_max_ns),
+	},
+	{
+		.name = "late_interrupts", .unit = "",
+		.text = "Encoder interrupts that found nothing changed: transitions came closer than the interrupt is fast",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 342,
+		.words = 2, .offset = offsetof(struct levelwind_status, late_interrupts),
+	},
+	{
+		.name = "encoder_index_pulses", .unit = "",
+		.text = "Index pulses (Z) of the encoder since power-up (0: not wired, or it has not turned)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 344,
+		.words = 2, .offset = offsetof(struct levelwind_status, encoder_index_pulses),
+	},
+	{
+		.name = "missed_edges", .unit = "edges",
+		.text = "Edges that were missing, or too many, between index pulses since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 346,
+		.words = 2, .offset = offsetof(struct levelwind_status, missed_edges),
+	},
+	{
+		.name = "stack_free_supervisor_bytes", .unit = "bytes",
+		.text = "Stack that the supervisor has never used (0: not measured)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 350,
+		.words = 1,
+		.offset = offsetof(struct levelwind_status, stack_free_supervisor_bytes),
+	},
+	{
+		.name = "stack_free_limits_bytes", .unit = "bytes",
+		.text = "Stack that the limits thread has never used (0: not measured)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 351,
+		.words = 1, .offset = offsetof(struct levelwind_status, stack_free_limits_bytes),
+	},
+	{
+		.name = "stack_free_modbus_bytes", .unit = "bytes",
+		.text = "Stack that the Modbus thread has never used (0: not measured)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 352,
+		.words = 1, .offset = offsetof(struct levelwind_status, stack_free_modbus_bytes),
+	},
+	{
+		.name = "stack_free_storage_bytes", .unit = "bytes",
+		.text = "Stack that the storage work queue has never used (0: not measured)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 353,
+		.words = 1, .offset = offsetof(struct levelwind_status, stack_free_storage_bytes),
+	},
+	{
+		.name = "stack_free_interrupts_bytes", .unit = "bytes",
+		.text = "Stack that the interrupts have never used (0: not measured)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 354,
+		.words = 1,
+		.offset = offsetof(struct levelwind_status, stack_free_interrupts_bytes),
 	},
 	{
 		.name = "command_sequence", .unit = "",

@@ -99,6 +99,11 @@ enum levelwind_fault {
 	LEVELWIND_FAULT_OVERSPEED = 10,
 	/** More losses of synchronization in one launch than los_recoveries_max */
 	LEVELWIND_FAULT_LOS_LIMIT = 11,
+	/**
+	 * The stepper driver reports an alarm: steps may be lost. Look at the driver, then index
+	 * again
+	 */
+	LEVELWIND_FAULT_STEPPER_ALARM = 12,
 };
 
 /** Momentary commands, by the register command or by the coil of the same name */
@@ -428,6 +433,8 @@ enum levelwind_flag {
 	LEVELWIND_FLAG_LOCKED = 28,
 	/** Line settings are on trial: any valid request to this unit confirms them */
 	LEVELWIND_FLAG_LINE_TRIAL = 29,
+	/** The last restart was made by the watchdog: a part of the firmware had stopped */
+	LEVELWIND_FLAG_WATCHDOG_RESET = 30,
 };
 
 /** Bit numbers of levelwind_status.launch_inhibit */
@@ -448,6 +455,8 @@ enum levelwind_launch_inhibit_bit {
 	LEVELWIND_LAUNCH_INHIBIT_MASTER_LOST = 6,
 	/** A re-index correction is pending */
 	LEVELWIND_LAUNCH_INHIBIT_CORRECTION = 7,
+	/** The stepper driver reports an alarm */
+	LEVELWIND_LAUNCH_INHIBIT_STEPPER_ALARM = 8,
 };
 
 /** Where a point belongs */
@@ -576,6 +585,15 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_SLOT_1                        330
 #define LEVELWIND_ADDRESS_SLOT_2                        331
 #define LEVELWIND_ADDRESS_SLOT_3                        332
+#define LEVELWIND_ADDRESS_ENCODER_INTERRUPT_MAX_NS      340
+#define LEVELWIND_ADDRESS_LATE_INTERRUPTS               342
+#define LEVELWIND_ADDRESS_ENCODER_INDEX_PULSES          344
+#define LEVELWIND_ADDRESS_MISSED_EDGES                  346
+#define LEVELWIND_ADDRESS_STACK_FREE_SUPERVISOR_BYTES   350
+#define LEVELWIND_ADDRESS_STACK_FREE_LIMITS_BYTES       351
+#define LEVELWIND_ADDRESS_STACK_FREE_MODBUS_BYTES       352
+#define LEVELWIND_ADDRESS_STACK_FREE_STORAGE_BYTES      353
+#define LEVELWIND_ADDRESS_STACK_FREE_INTERRUPTS_BYTES   354
 #define LEVELWIND_ADDRESS_COMMAND_SEQUENCE              400
 #define LEVELWIND_ADDRESS_COMMAND_CODE                  401
 #define LEVELWIND_ADDRESS_COMMAND_RESULT                402
@@ -725,6 +743,30 @@ struct levelwind_status {
 	int32_t slot_2;
 	/** Storage: second slot of event log and counters (enum levelwind_slot_state) */
 	int32_t slot_3;
+	/**
+	 * Longest time in the encoder interrupt since power-up, without the operating system's
+	 * share (0: not measured) [ns]
+	 */
+	uint32_t encoder_interrupt_max_ns;
+	/**
+	 * Encoder interrupts that found nothing changed: transitions came closer than the interrupt
+	 * is fast
+	 */
+	uint32_t late_interrupts;
+	/** Index pulses (Z) of the encoder since power-up (0: not wired, or it has not turned) */
+	uint32_t encoder_index_pulses;
+	/** Edges that were missing, or too many, between index pulses since power-up [edges] */
+	uint32_t missed_edges;
+	/** Stack that the supervisor has never used (0: not measured) [bytes] */
+	int32_t stack_free_supervisor_bytes;
+	/** Stack that the limits thread has never used (0: not measured) [bytes] */
+	int32_t stack_free_limits_bytes;
+	/** Stack that the Modbus thread has never used (0: not measured) [bytes] */
+	int32_t stack_free_modbus_bytes;
+	/** Stack that the storage work queue has never used (0: not measured) [bytes] */
+	int32_t stack_free_storage_bytes;
+	/** Stack that the interrupts have never used (0: not measured) [bytes] */
+	int32_t stack_free_interrupts_bytes;
 	/** Counts every command, also refused ones */
 	int32_t command_sequence;
 	/** The last command (enum levelwind_command) */
@@ -810,7 +852,7 @@ struct levelwind_point {
 	size_t value_count;
 };
 
-#define LEVELWIND_POINT_COUNT 139
+#define LEVELWIND_POINT_COUNT 148
 
 /** All points, by block and rising address */
 extern const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT];

@@ -547,6 +547,44 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 		.type = LW_TYPE_U16,
 	},
 	{
+		.address = 340, .count = 1,
+		.offset = offsetof(struct lw_status, encoder_interrupt_max_ns), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 342, .count = 1, .offset = offsetof(struct lw_status, late_interrupts),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 344, .count = 1,
+		.offset = offsetof(struct lw_status, encoder_index_pulses), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 346, .count = 1, .offset = offsetof(struct lw_status, missed_edges),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 350, .count = 1,
+		.offset = offsetof(struct lw_status, stack_free_supervisor_bytes),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 351, .count = 1,
+		.offset = offsetof(struct lw_status, stack_free_limits_bytes), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 352, .count = 1,
+		.offset = offsetof(struct lw_status, stack_free_modbus_bytes), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 353, .count = 1,
+		.offset = offsetof(struct lw_status, stack_free_storage_bytes), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 354, .count = 1,
+		.offset = offsetof(struct lw_status, stack_free_interrupts_bytes),
+		.type = LW_TYPE_U16,
+	},
+	{
 		.address = 400, .count = 1, .offset = offsetof(struct lw_status, command_sequence),
 		.type = LW_TYPE_U16,
 	},
@@ -718,6 +756,20 @@ const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT] = {
 		.flags = LW_POINT_WRITABLE, .min = 0, .max = 3, .default_value = 0,
 	},
 	{
+		.address = 61462, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_stepper_alarm), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.address = 61463, .count = 1, .offset = offsetof(struct lw_bench, bench_hang),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 4,
+		.default_value = 0,
+	},
+	{
+		.address = 61464, .count = 1, .offset = offsetof(struct lw_bench, bench_restart),
+		.type = LW_TYPE_U16,
+	},
+	{
 		.address = 61469, .count = 1, .offset = offsetof(struct lw_bench, bench_result),
 		.type = LW_TYPE_U16,
 	},
@@ -831,6 +883,7 @@ const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT] = {
 	{.address = 27, .count = 1, .offset = 27, .type = LW_TYPE_BIT},
 	{.address = 28, .count = 1, .offset = 28, .type = LW_TYPE_BIT},
 	{.address = 29, .count = 1, .offset = 29, .type = LW_TYPE_BIT},
+	{.address = 30, .count = 1, .offset = 30, .type = LW_TYPE_BIT},
 };
 
 const uint8_t lw_map_coil_command[LW_MAP_COILS_COUNT] = {

@@ -67,6 +67,11 @@ bool lw_controller_moves_toward(int direction, int side)
 	return direction == lw_side_direction(side);
 }
 
+static int32_t edges_per_encoder_rev(const struct lw_params *params)
+{
+	return params->encoder_pulses_per_rev * params->encoder_edges_per_pulse;
+}
+
 void lw_controller_init(struct lw_controller *controller, const struct lw_params *params,
 			const struct lw_derived *derived, const struct lw_inputs *inputs,
 			uint64_t now_us)
@@ -90,6 +95,8 @@ void lw_controller_init(struct lw_controller *controller, const struct lw_params
 	lw_motion_init(&controller->motion, &controller->windows[0]);
 	lw_quadrature_init(&controller->quadrature, &quadrature_config, inputs->encoder_a,
 			   inputs->encoder_b);
+	lw_encoder_index_configure(&controller->encoder_index, edges_per_encoder_rev(params));
+	controller->stepper_alarm = inputs->stepper_alarm;
 	for (int side = 0; side < 2; side++) {
 		lw_limit_switch_init(&controller->limit[side], &controller->limit_config,
 				     inputs->limit[side].no_closed, inputs->limit[side].nc_closed,
@@ -107,6 +114,7 @@ void lw_controller_configure(struct lw_controller *controller, const struct lw_p
 	controller->derived = derived;
 	controller->limit_config = lw_params_limit_switch(params);
 	lw_quadrature_configure(&controller->quadrature, &quadrature_config);
+	lw_encoder_index_configure(&controller->encoder_index, edges_per_encoder_rev(params));
 	if (!need_index) {
 		return;
 	}
@@ -132,6 +140,11 @@ void lw_controller_configure(struct lw_controller *controller, const struct lw_p
 	}
 }
 
+void lw_controller_encoder_index(struct lw_controller *controller)
+{
+	lw_encoder_index_pulse(&controller->encoder_index, controller->motion.edges);
+}
+
 int lw_controller_timer_edge(struct lw_controller *controller)
 {
 	return lw_motion_timer_edge(&controller->motion);
@@ -154,6 +167,11 @@ void lw_controller_overtravel(struct lw_controller *controller, int side, bool a
 	controller->overtravel[side] = actuated;
 	lw_motion_block(&controller->motion, side == LW_PLUS ? LW_MOTION_PLUS : LW_MOTION_MINUS,
 			actuated);
+}
+
+void lw_controller_stepper_alarm(struct lw_controller *controller, bool alarm)
+{
+	controller->stepper_alarm = alarm;
 }
 
 bool lw_controller_moving(const struct lw_controller *controller)
@@ -214,6 +232,7 @@ uint16_t lw_controller_launch_inhibit(const struct lw_controller *controller)
 	inhibit |= (unsigned int)controller->master_lost << LW_LAUNCH_INHIBIT_MASTER_LOST;
 	inhibit |= (unsigned int)((controller->motion.requests & LW_MOTION_REQUEST_CORRECTION) != 0)
 		   << LW_LAUNCH_INHIBIT_CORRECTION;
+	inhibit |= (unsigned int)controller->stepper_alarm << LW_LAUNCH_INHIBIT_STEPPER_ALARM;
 	return (uint16_t)inhibit;
 }
 
@@ -276,6 +295,8 @@ static bool cause_present(const struct lw_controller *controller)
 		return controller->overtravel[LW_PLUS] || controller->overtravel[LW_MINUS];
 	case LW_FAULT_BOTH_SWITCHES_ACTIVE:
 		return limit[LW_PLUS].active && limit[LW_MINUS].active;
+	case LW_FAULT_STEPPER_ALARM:
+		return controller->stepper_alarm;
 	default:
 		return false;
 	}
@@ -428,6 +449,15 @@ static void check_overtravel(struct lw_controller *controller)
 	}
 }
 
+/** A driver in alarm has let go of its motor: whatever the state, the position is lost. */
+static void check_stepper(struct lw_controller *controller)
+{
+	if (controller->stepper_alarm && controller->state != LW_STATE_OFF &&
+	    controller->state != LW_STATE_FAULT) {
+		lw_controller_fail(controller, LW_FAULT_STEPPER_ALARM);
+	}
+}
+
 static void check_speed(struct lw_controller *controller)
 {
 	const int64_t speed = controller->drum_speed_edges_per_s;
@@ -516,6 +546,7 @@ void lw_controller_tick(struct lw_controller *controller, uint64_t now_us)
 	lw_motion_count(&controller->motion);
 	measure_speed(controller, now_us);
 	check_overtravel(controller);
+	check_stepper(controller);
 	check_speed(controller);
 	if (controller->state == LW_STATE_TRACKING) {
 		lw_tracking_tick(controller, triggers);

@@ -46,6 +46,7 @@ static uint32_t flags(const struct lw_device *device, uint16_t launch_inhibit)
 	FLAG(RESTART_NEEDED, lw_device_line_differs(device));
 	FLAG(LOCKED, lw_lock_is_closed(&device->lock, device->active.lock_code));
 	FLAG(LINE_TRIAL, lw_device_line_on_trial(device));
+	FLAG(WATCHDOG_RESET, device->config->watchdog_reset);
 #undef FLAG
 	return bits;
 }
@@ -152,6 +153,16 @@ void lw_device_refresh_status(struct lw_device *device)
 		.slot_1 = (int32_t)param_slots->state[1],
 		.slot_2 = (int32_t)journal_slots->state[0],
 		.slot_3 = (int32_t)journal_slots->state[1],
+
+		.encoder_interrupt_max_ns = device->health.encoder_interrupt_max_ns,
+		.late_interrupts = controller->quadrature.late_interrupts,
+		.encoder_index_pulses = controller->encoder_index.pulses,
+		.missed_edges = controller->encoder_index.missed_edges,
+		.stack_free_supervisor_bytes = device->health.stack_free_supervisor_bytes,
+		.stack_free_limits_bytes = device->health.stack_free_limits_bytes,
+		.stack_free_modbus_bytes = device->health.stack_free_modbus_bytes,
+		.stack_free_storage_bytes = device->health.stack_free_storage_bytes,
+		.stack_free_interrupts_bytes = device->health.stack_free_interrupts_bytes,
 
 		.command_sequence = device->command.sequence,
 		.command_code = device->command.code,

@@ -43,5 +43,6 @@ void lw_quadrature_init(struct lw_quadrature *quadrature, const struct lw_quadra
 {
 	quadrature->levels = (uint8_t)(((unsigned int)a << 1) | b);
 	quadrature->illegal_transitions = 0;
+	quadrature->late_interrupts = 0;
 	lw_quadrature_configure(quadrature, config);
 }

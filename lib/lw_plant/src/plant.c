@@ -183,6 +183,10 @@ static uint32_t run_slow(struct lw_plant *plant)
 		lw_plant_plan_contacts(plant);
 	}
 	changed |= lw_plant_switch_pins(plant);
+	if (plant->pins.stepper_alarm != plant->carriage.alarm) {
+		plant->pins.stepper_alarm = plant->carriage.alarm;
+		changed |= LW_PLANT_STEPPER_ALARM;
+	}
 	plant->slow_ns = next_slow_ns(plant);
 	return changed;
 }

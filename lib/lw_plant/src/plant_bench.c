@@ -161,6 +161,13 @@ static void store(void *context, const struct lw_point *point, uint16_t element,
 	case LW_ADDRESS_BENCH_DIRECTION_REVERSED:
 		ret = lw_plant_inject(plant, LW_PLANT_FAULT_CARRIAGE_REVERSED, value);
 		break;
+	case LW_ADDRESS_BENCH_STEPPER_ALARM:
+		ret = lw_plant_inject(plant, LW_PLANT_FAULT_STEPPER_ALARM, value);
+		break;
+	case LW_ADDRESS_BENCH_HANG:
+		ret = bench->threads ? 0 : -ENOTSUP;
+		bench->hang = ret == 0 ? (enum lw_bench_thread)value : LW_BENCH_THREAD_NONE;
+		break;
 	case LW_ADDRESS_BENCH_TRIGGER_FAULT:
 		ret = arm(bench, (enum lw_trigger_fault)value);
 		break;
@@ -188,6 +195,8 @@ void lw_plant_bench_init(struct lw_plant_bench *bench, struct lw_plant *plant)
 	/* The profile is large, and nobody reads it beyond its count. */
 	bench->plant = plant;
 	bench->power_cut = false;
+	bench->threads = false;
+	bench->hang = LW_BENCH_THREAD_NONE;
 	bench->profile_count = 0;
 	memset(&bench->registers, 0, sizeof(bench->registers));
 	for (size_t i = 0; i < LW_MAP_BENCH_COUNT; i++) {

@@ -100,7 +100,7 @@ void lw_plant_carriage_substep(struct lw_plant_carriage *carriage, uint64_t begi
 
 	double acceleration = carriage->side_load_usteps_per_s2;
 
-	if (carriage->enabled) {
+	if (carriage->enabled && !carriage->alarm) {
 		acceleration += field_acceleration(carriage);
 	}
 

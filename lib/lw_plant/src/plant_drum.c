@@ -28,6 +28,9 @@ void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config
 		.transitions_per_milli_rpm_s = transitions_per_rev / MILLI_RPM_S_PER_REV,
 		.acceleration_milli_rpm_per_s =
 			config->drum_acceleration_rpm_per_s * MILLI_RPM_PER_RPM,
+		.transitions_per_encoder_rev =
+			TRANSITIONS_PER_PULSE * (int32_t)config->encoder_pulses_per_rev,
+		.past_index = (TRANSITIONS_PER_PULSE / 2) * (int32_t)config->encoder_pulses_per_rev,
 		/* Half-way between two transitions: a fresh encoder does not sit on an edge. */
 		.fraction = 0.5,
 	};
@@ -152,6 +155,22 @@ static int64_t shown_transitions(struct lw_plant_drum *drum)
 	return drum->held_transitions;
 }
 
+/** The index is the encoder's truth: no fault hides it. */
+static uint32_t show_index(struct lw_plant *plant)
+{
+	struct lw_plant_drum *drum = &plant->drum;
+	const bool before = plant->pins.encoder_index;
+
+	drum->past_index += drum->direction;
+	if (drum->past_index == drum->transitions_per_encoder_rev) {
+		drum->past_index = 0;
+	} else if (drum->past_index < 0) {
+		drum->past_index = drum->transitions_per_encoder_rev - 1;
+	}
+	plant->pins.encoder_index = drum->past_index == 0;
+	return plant->pins.encoder_index != before ? LW_PLANT_ENCODER_INDEX : 0;
+}
+
 uint32_t lw_plant_drum_transition(struct lw_plant *plant)
 {
 	struct lw_plant_drum *drum = &plant->drum;
@@ -160,7 +179,7 @@ uint32_t lw_plant_drum_transition(struct lw_plant *plant)
 	drum->fraction -= drum->direction;
 	drum->offset_ns += drum->period_ns;
 	plan_transition(drum, substep_begin_ns(plant));
-	return show(plant, shown_transitions(drum));
+	return show(plant, shown_transitions(drum)) | show_index(plant);
 }
 
 uint32_t lw_plant_drum_dither(struct lw_plant *plant)

@@ -40,6 +40,7 @@ static int check(const struct lw_plant *plant, enum lw_plant_fault fault, int32_
 	case LW_PLANT_FAULT_PLACE_CARRIAGE:
 		return within_flanges(plant, argument) ? 0 : -ERANGE;
 	case LW_PLANT_FAULT_CARRIAGE_REVERSED:
+	case LW_PLANT_FAULT_STEPPER_ALARM:
 		return argument == 0 || argument == 1 ? 0 : -EINVAL;
 	case LW_PLANT_FAULT_COUNT:
 		break;
@@ -155,6 +156,9 @@ int lw_plant_inject(struct lw_plant *plant, enum lw_plant_fault fault, int32_t a
 		break;
 	case LW_PLANT_FAULT_CARRIAGE_REVERSED:
 		plant->carriage.reversed = argument != 0;
+		break;
+	case LW_PLANT_FAULT_STEPPER_ALARM:
+		plant->carriage.alarm = argument != 0;
 		break;
 	case LW_PLANT_FAULT_COUNT:
 		break;

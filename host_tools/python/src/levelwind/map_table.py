@@ -124,6 +124,11 @@ class Fault(MapEnum):
         "los_limit",
         "More losses of synchronization in one launch than los_recoveries_max",
     )
+    STEPPER_ALARM = (
+        12,
+        "stepper_alarm",
+        "The stepper driver reports an alarm: steps may be lost. Look at the driver, then index again",
+    )
 
 
 class Command(MapEnum):
@@ -463,6 +468,24 @@ class CamInterpolation(MapEnum):
     TRAPEZOID = 1, "trapezoid", "At rest in every row: ramp up, plateau, ramp down"
 
 
+class BenchThread(MapEnum):
+    """Threads of the firmware that the bench can hang."""
+
+    NONE = 0, "none", "None"
+    SUPERVISOR = 1, "supervisor", "Supervisor"
+    LIMITS = 2, "limits", "Limits thread"
+    MODBUS = 3, "modbus", "Modbus thread"
+    STORAGE = 4, "storage", "Storage work queue"
+
+
+class BenchRestart(MapEnum):
+    """What the simulated machine saw when the watchdog restarted the controller."""
+
+    NONE = 0, "none", "The last restart was not by the watchdog"
+    WITHOUT_CURRENT = 1, "without_current", "The stepper had no current any more"
+    WITH_CURRENT = 2, "with_current", "The stepper still had current"
+
+
 class BenchCommand(MapEnum):
     """Commands of the simulated plant."""
 
@@ -579,6 +602,11 @@ class Flag(MapEnum):
         "line_trial",
         "Line settings are on trial: any valid request to this unit confirms them",
     )
+    WATCHDOG_RESET = (
+        30,
+        "watchdog_reset",
+        "The last restart was made by the watchdog: a part of the firmware had stopped",
+    )
 
 
 class LaunchInhibit(MapEnum):
@@ -592,6 +620,7 @@ class LaunchInhibit(MapEnum):
     OVERSPEED = 5, "overspeed", "The drum tripped the overspeed limit"
     MASTER_LOST = 6, "master_lost", "The Modbus master is silent"
     CORRECTION = 7, "correction", "A re-index correction is pending"
+    STEPPER_ALARM = 8, "stepper_alarm", "The stepper driver reports an alarm"
 
 
 # What names the detail of an event; the details of the others are plain numbers.
@@ -985,6 +1014,14 @@ POINTS: dict[str, Point] = {
             space="discrete",
             type="bit",
             text="Line settings are on trial: any valid request to this unit confirms them",
+            block="discretes",
+        ),
+        Point(
+            name="watchdog_reset",
+            address=30,
+            space="discrete",
+            type="bit",
+            text="The last restart was made by the watchdog: a part of the firmware had stopped",
             block="discretes",
         ),
         Point(
@@ -2427,6 +2464,89 @@ POINTS: dict[str, Point] = {
             enum=SlotState,
         ),
         Point(
+            name="encoder_interrupt_max_ns",
+            address=340,
+            space="input",
+            type="u32",
+            text="Longest time in the encoder interrupt since power-up, without the operating system's share (0: not measured)",
+            block="status",
+            words=2,
+            unit="ns",
+        ),
+        Point(
+            name="late_interrupts",
+            address=342,
+            space="input",
+            type="u32",
+            text="Encoder interrupts that found nothing changed: transitions came closer than the interrupt is fast",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="encoder_index_pulses",
+            address=344,
+            space="input",
+            type="u32",
+            text="Index pulses (Z) of the encoder since power-up (0: not wired, or it has not turned)",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="missed_edges",
+            address=346,
+            space="input",
+            type="u32",
+            text="Edges that were missing, or too many, between index pulses since power-up",
+            block="status",
+            words=2,
+            unit="edges",
+        ),
+        Point(
+            name="stack_free_supervisor_bytes",
+            address=350,
+            space="input",
+            type="u16",
+            text="Stack that the supervisor has never used (0: not measured)",
+            block="status",
+            unit="bytes",
+        ),
+        Point(
+            name="stack_free_limits_bytes",
+            address=351,
+            space="input",
+            type="u16",
+            text="Stack that the limits thread has never used (0: not measured)",
+            block="status",
+            unit="bytes",
+        ),
+        Point(
+            name="stack_free_modbus_bytes",
+            address=352,
+            space="input",
+            type="u16",
+            text="Stack that the Modbus thread has never used (0: not measured)",
+            block="status",
+            unit="bytes",
+        ),
+        Point(
+            name="stack_free_storage_bytes",
+            address=353,
+            space="input",
+            type="u16",
+            text="Stack that the storage work queue has never used (0: not measured)",
+            block="status",
+            unit="bytes",
+        ),
+        Point(
+            name="stack_free_interrupts_bytes",
+            address=354,
+            space="input",
+            type="u16",
+            text="Stack that the interrupts have never used (0: not measured)",
+            block="status",
+            unit="bytes",
+        ),
+        Point(
             name="command_sequence",
             address=400,
             space="input",
@@ -2853,6 +2973,40 @@ POINTS: dict[str, Point] = {
             default=0,
             writable=True,
             enum=TriggerFault,
+        ),
+        Point(
+            name="bench_stepper_alarm",
+            address=61462,
+            space="holding",
+            type="u16",
+            text="1 lets the stepper driver report an alarm and switch its motor off",
+            block="bench",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_hang",
+            address=61463,
+            space="holding",
+            type="u16",
+            text="Writing a code hangs that thread; refused by the simulator, which has none",
+            block="bench",
+            min=0,
+            max=4,
+            default=0,
+            writable=True,
+            enum=BenchThread,
+        ),
+        Point(
+            name="bench_restart",
+            address=61464,
+            space="holding",
+            type="u16",
+            text="The last restart by the watchdog, as the stepper saw it",
+            block="bench",
+            enum=BenchRestart,
         ),
         Point(
             name="bench_result",

@@ -19,12 +19,15 @@ LOS_KINDS = {"los1_plus": "1+", "los1_minus": "1-", "los2_plus": "2+", "los2_min
 LOS_POINTS = [
     POINTS[f"{kind}_{part}"] for kind in LOS_KINDS for part in ("count", "position_um", "time_ms")
 ]
+HEALTH_POINTS = [p for p in POINTS.values() if p.block == "status" and 340 <= p.address < 370]
+STACKS = ("supervisor", "limits", "modbus", "storage", "interrupts")
 STATE_STYLES = {State.TRACKING: "green", State.READY: "cyan", State.FAULT: "red"}
 NOTICES = (
     Flag.HELD,
     Flag.MASTER_LOST,
     Flag.OVERSPEED_WARNING,
     Flag.OVERSPEED_TRIP,
+    Flag.WATCHDOG_RESET,
     Flag.DEFAULTS_LOADED,
     Flag.STAGED,
     Flag.DIRTY,
@@ -53,8 +56,8 @@ def read_live(device: Device) -> dict[str, int]:
 
 
 def read_status(device: Device) -> dict[str, int]:
-    """The live status and the LOS records."""
-    return read_live(device) | device.read(LOS_POINTS)
+    """The live status, the LOS records, and what the firmware measures of itself."""
+    return read_live(device) | device.read(LOS_POINTS) | device.read(HEALTH_POINTS)
 
 
 def read_travel(device: Device) -> Travel:
@@ -103,6 +106,11 @@ def render(status: Mapping[str, int], travel: Travel) -> Panel:
     rows.add_row(
         "Mode", f"{enum_label(Mode, status['active_mode'])}, up {status['uptime_ms'] / 1000:.0f} s"
     )
+    rows.add_row("Encoder", _encoder(status))
+    stacks = {name: status[f"stack_free_{name}_bytes"] for name in STACKS}
+    if any(stacks.values()):
+        free = ", ".join(f"{name} {count}" for name, count in stacks.items())
+        rows.add_row("Stack free", f"{free} bytes")
     notices = [bit.text for bit in NOTICES if flag(status, bit)]
     if notices:
         rows.add_row("Notices", Text("\n".join(notices), style="yellow"))
@@ -135,6 +143,18 @@ def _los(status: Mapping[str, int]) -> Text:
         return Text("in synchronization", style="green")
     recoveries = f"{status['los_recoveries']} re-indexings in this launch"
     return Text("\n".join([*seen, recoveries]), style="bold red")
+
+
+def _encoder(status: Mapping[str, int]) -> Text:
+    parts = []
+    if status["encoder_interrupt_max_ns"]:
+        parts.append(f"interrupt {status['encoder_interrupt_max_ns'] / 1000:.1f} us at most")
+    parts.append(f"{status['late_interrupts']} late interrupts")
+    if status["encoder_index_pulses"]:
+        parts.append(f"{status['missed_edges']} missed edges")
+    else:
+        parts.append("no index pulse yet")
+    return Text(", ".join(parts), style="bold red" if status["missed_edges"] else "")
 
 
 def _carriage(status: Mapping[str, int], travel: Travel) -> str:

@@ -108,6 +108,11 @@ enum lw_fault {
 	LW_FAULT_OVERSPEED = 10,
 	/** More losses of synchronization in one launch than los_recoveries_max */
 	LW_FAULT_LOS_LIMIT = 11,
+	/**
+	 * The stepper driver reports an alarm: steps may be lost. Look at the driver, then index
+	 * again
+	 */
+	LW_FAULT_STEPPER_ALARM = 12,
 };
 
 /** Momentary commands, by the register command or by the coil of the same name */
@@ -451,6 +456,30 @@ enum lw_cam_interpolation {
 	LW_CAM_INTERPOLATION_TRAPEZOID = 1,
 };
 
+/** Threads of the firmware that the bench can hang */
+enum lw_bench_thread {
+	/** None */
+	LW_BENCH_THREAD_NONE = 0,
+	/** Supervisor */
+	LW_BENCH_THREAD_SUPERVISOR = 1,
+	/** Limits thread */
+	LW_BENCH_THREAD_LIMITS = 2,
+	/** Modbus thread */
+	LW_BENCH_THREAD_MODBUS = 3,
+	/** Storage work queue */
+	LW_BENCH_THREAD_STORAGE = 4,
+};
+
+/** What the simulated machine saw when the watchdog restarted the controller */
+enum lw_bench_restart {
+	/** The last restart was not by the watchdog */
+	LW_BENCH_RESTART_NONE = 0,
+	/** The stepper had no current any more */
+	LW_BENCH_RESTART_WITHOUT_CURRENT = 1,
+	/** The stepper still had current */
+	LW_BENCH_RESTART_WITH_CURRENT = 2,
+};
+
 /** Commands of the simulated plant */
 enum lw_bench_command {
 	/** Nothing */
@@ -565,6 +594,8 @@ enum lw_flag {
 	LW_FLAG_LOCKED = 28,
 	/** Line settings are on trial: any valid request to this unit confirms them */
 	LW_FLAG_LINE_TRIAL = 29,
+	/** The last restart was made by the watchdog: a part of the firmware had stopped */
+	LW_FLAG_WATCHDOG_RESET = 30,
 };
 
 /** Bit numbers of lw_status.launch_inhibit */
@@ -585,6 +616,8 @@ enum lw_launch_inhibit_bit {
 	LW_LAUNCH_INHIBIT_MASTER_LOST = 6,
 	/** A re-index correction is pending */
 	LW_LAUNCH_INHIBIT_CORRECTION = 7,
+	/** The stepper driver reports an alarm */
+	LW_LAUNCH_INHIBIT_STEPPER_ALARM = 8,
 };
 
 /* Protocol addresses. Discrete inputs: enum lw_flag is the address. */
@@ -670,85 +703,94 @@ enum lw_launch_inhibit_bit {
 #define LW_MAP_STORED_ADDRESS_OFFSET 2000
 
 /* Block status: input registers. */
-#define LW_ADDRESS_SELF_TEST                0
-#define LW_ADDRESS_MAP_VERSION              2
-#define LW_ADDRESS_VERSION_MAJOR            3
-#define LW_ADDRESS_VERSION_MINOR            4
-#define LW_ADDRESS_VERSION_PATCH            5
-#define LW_ADDRESS_HOST                     6
-#define LW_ADDRESS_STATE                    100
-#define LW_ADDRESS_ACTIVE_MODE              101
-#define LW_ADDRESS_FAULT                    102
-#define LW_ADDRESS_FLAGS                    103
-#define LW_ADDRESS_LAUNCH_INHIBIT           105
-#define LW_ADDRESS_POSITION_UM              106
-#define LW_ADDRESS_POSITION_USTEPS          108
-#define LW_ADDRESS_M                        109
-#define LW_ADDRESS_U                        111
-#define LW_ADDRESS_DRUM_SPEED_EDGES_PER_S   113
-#define LW_ADDRESS_ROPE_SPEED_MM_PER_S      115
-#define LW_ADDRESS_ROPE_MM                  117
-#define LW_ADDRESS_NET_EDGES                119
-#define LW_ADDRESS_PATTERN_EDGES            123
-#define LW_ADDRESS_UPTIME_MS                127
-#define LW_ADDRESS_LOS_RECOVERIES           129
-#define LW_ADDRESS_SPAN_ERROR_UM            130
-#define LW_ADDRESS_LOS1_PLUS_COUNT          200
-#define LW_ADDRESS_LOS1_PLUS_POSITION_UM    201
-#define LW_ADDRESS_LOS1_PLUS_TIME_MS        203
-#define LW_ADDRESS_LOS1_MINUS_COUNT         210
-#define LW_ADDRESS_LOS1_MINUS_POSITION_UM   211
-#define LW_ADDRESS_LOS1_MINUS_TIME_MS       213
-#define LW_ADDRESS_LOS2_PLUS_COUNT          220
-#define LW_ADDRESS_LOS2_PLUS_POSITION_UM    221
-#define LW_ADDRESS_LOS2_PLUS_TIME_MS        223
-#define LW_ADDRESS_LOS2_MINUS_COUNT         230
-#define LW_ADDRESS_LOS2_MINUS_POSITION_UM   231
-#define LW_ADDRESS_LOS2_MINUS_TIME_MS       233
-#define LW_ADDRESS_ILLEGAL_TRANSITIONS      300
-#define LW_ADDRESS_SWITCH_PLUS_TRIGGERS     302
-#define LW_ADDRESS_SWITCH_MINUS_TRIGGERS    304
-#define LW_ADDRESS_STEPS                    306
-#define LW_ADDRESS_REQUESTS                 308
-#define LW_ADDRESS_CRC_ERRORS               310
-#define LW_ADDRESS_EXCEPTIONS               312
-#define LW_ADDRESS_BOOTS                    314
-#define LW_ADDRESS_WATCHDOG_RESETS          316
-#define LW_ADDRESS_POWERED_S                318
-#define LW_ADDRESS_TRACKING_S               320
-#define LW_ADDRESS_LOG_SEQUENCE             322
-#define LW_ADDRESS_LOG_COUNT                324
-#define LW_ADDRESS_LOG_UNSAVED              325
-#define LW_ADDRESS_RECORD_SEQUENCE          326
-#define LW_ADDRESS_RECORD_SCHEMA            328
-#define LW_ADDRESS_SLOT_0                   329
-#define LW_ADDRESS_SLOT_1                   330
-#define LW_ADDRESS_SLOT_2                   331
-#define LW_ADDRESS_SLOT_3                   332
-#define LW_ADDRESS_COMMAND_SEQUENCE         400
-#define LW_ADDRESS_COMMAND_CODE             401
-#define LW_ADDRESS_COMMAND_RESULT           402
-#define LW_ADDRESS_COMMAND_REASON           403
-#define LW_ADDRESS_COMMAND_ADDRESS          404
-#define LW_ADDRESS_COMMAND_VALUE            405
-#define LW_ADDRESS_COMMAND_LIMIT            407
-#define LW_ADDRESS_LAST_ERROR_REASON        410
-#define LW_ADDRESS_LAST_ERROR_FUNCTION      411
-#define LW_ADDRESS_LAST_ERROR_EXCEPTION     412
-#define LW_ADDRESS_LAST_ERROR_ADDRESS       413
-#define LW_ADDRESS_LAST_ERROR_VALUE         414
-#define LW_ADDRESS_LAST_ERROR_LIMIT         416
-#define LW_ADDRESS_KA                       500
-#define LW_ADDRESS_NR                       502
-#define LW_ADDRESS_KS                       504
-#define LW_ADDRESS_REVERSAL_PLUS_USTEPS     506
-#define LW_ADDRESS_REVERSAL_MINUS_USTEPS    507
-#define LW_ADDRESS_OVERSHOOT_ACTUAL_UM      508
-#define LW_ADDRESS_SLOPE_ERROR_PPM          510
-#define LW_ADDRESS_OVERSHOOT_ERROR_UM       512
-#define LW_ADDRESS_EDGES_PER_1000_DRUM_REVS 514
-#define LW_ADDRESS_DWELL_PLUS_EDGES         516
-#define LW_ADDRESS_DWELL_MINUS_EDGES        518
+#define LW_ADDRESS_SELF_TEST                   0
+#define LW_ADDRESS_MAP_VERSION                 2
+#define LW_ADDRESS_VERSION_MAJOR               3
+#define LW_ADDRESS_VERSION_MINOR               4
+#define LW_ADDRESS_VERSION_PATCH               5
+#define LW_ADDRESS_HOST                        6
+#define LW_ADDRESS_STATE                       100
+#define LW_ADDRESS_ACTIVE_MODE                 101
+#define LW_ADDRESS_FAULT                       102
+#define LW_ADDRESS_FLAGS                       103
+#define LW_ADDRESS_LAUNCH_INHIBIT              105
+#define LW_ADDRESS_POSITION_UM                 106
+#define LW_ADDRESS_POSITION_USTEPS             108
+#define LW_ADDRESS_M                           109
+#define LW_ADDRESS_U                           111
+#define LW_ADDRESS_DRUM_SPEED_EDGES_PER_S      113
+#define LW_ADDRESS_ROPE_SPEED_MM_PER_S         115
+#define LW_ADDRESS_ROPE_MM                     117
+#define LW_ADDRESS_NET_EDGES                   119
+#define LW_ADDRESS_PATTERN_EDGES               123
+#define LW_ADDRESS_UPTIME_MS                   127
+#define LW_ADDRESS_LOS_RECOVERIES              129
+#define LW_ADDRESS_SPAN_ERROR_UM               130
+#define LW_ADDRESS_LOS1_PLUS_COUNT             200
+#define LW_ADDRESS_LOS1_PLUS_POSITION_UM       201
+#define LW_ADDRESS_LOS1_PLUS_TIME_MS           203
+#define LW_ADDRESS_LOS1_MINUS_COUNT            210
+#define LW_ADDRESS_LOS1_MINUS_POSITION_UM      211
+#define LW_ADDRESS_LOS1_MINUS_TIME_MS          213
+#define LW_ADDRESS_LOS2_PLUS_COUNT             220
+#define LW_ADDRESS_LOS2_PLUS_POSITION_UM       221
+#define LW_ADDRESS_LOS2_PLUS_TIME_MS           223
+#define LW_ADDRESS_LOS2_MINUS_COUNT            230
+#define LW_ADDRESS_LOS2_MINUS_POSITION_UM      231
+#define LW_ADDRESS_LOS2_MINUS_TIME_MS          233
+#define LW_ADDRESS_ILLEGAL_TRANSITIONS         300
+#define LW_ADDRESS_SWITCH_PLUS_TRIGGERS        302
+#define LW_ADDRESS_SWITCH_MINUS_TRIGGERS       304
+#define LW_ADDRESS_STEPS                       306
+#define LW_ADDRESS_REQUESTS                    308
+#define LW_ADDRESS_CRC_ERRORS                  310
+#define LW_ADDRESS_EXCEPTIONS                  312
+#define LW_ADDRESS_BOOTS                       314
+#define LW_ADDRESS_WATCHDOG_RESETS             316
+#define LW_ADDRESS_POWERED_S                   318
+#define LW_ADDRESS_TRACKING_S                  320
+#define LW_ADDRESS_LOG_SEQUENCE                322
+#define LW_ADDRESS_LOG_COUNT                   324
+#define LW_ADDRESS_LOG_UNSAVED                 325
+#define LW_ADDRESS_RECORD_SEQUENCE             326
+#define LW_ADDRESS_RECORD_SCHEMA               328
+#define LW_ADDRESS_SLOT_0                      329
+#define LW_ADDRESS_SLOT_1                      330
+#define LW_ADDRESS_SLOT_2                      331
+#define LW_ADDRESS_SLOT_3                      332
+#define LW_ADDRESS_ENCODER_INTERRUPT_MAX_NS    340
+#define LW_ADDRESS_LATE_INTERRUPTS             342
+#define LW_ADDRESS_ENCODER_INDEX_PULSES        344
+#define LW_ADDRESS_MISSED_EDGES                346
+#define LW_ADDRESS_STACK_FREE_SUPERVISOR_BYTES 350
+#define LW_ADDRESS_STACK_FREE_LIMITS_BYTES     351
+#define LW_ADDRESS_STACK_FREE_MODBUS_BYTES     352
+#define LW_ADDRESS_STACK_FREE_STORAGE_BYTES    353
+#define LW_ADDRESS_STACK_FREE_INTERRUPTS_BYTES 354
+#define LW_ADDRESS_COMMAND_SEQUENCE            400
+#define LW_ADDRESS_COMMAND_CODE                401
+#define LW_ADDRESS_COMMAND_RESULT              402
+#define LW_ADDRESS_COMMAND_REASON              403
+#define LW_ADDRESS_COMMAND_ADDRESS             404
+#define LW_ADDRESS_COMMAND_VALUE               405
+#define LW_ADDRESS_COMMAND_LIMIT               407
+#define LW_ADDRESS_LAST_ERROR_REASON           410
+#define LW_ADDRESS_LAST_ERROR_FUNCTION         411
+#define LW_ADDRESS_LAST_ERROR_EXCEPTION        412
+#define LW_ADDRESS_LAST_ERROR_ADDRESS          413
+#define LW_ADDRESS_LAST_ERROR_VALUE            414
+#define LW_ADDRESS_LAST_ERROR_LIMIT            416
+#define LW_ADDRESS_KA                          500
+#define LW_ADDRESS_NR                          502
+#define LW_ADDRESS_KS                          504
+#define LW_ADDRESS_REVERSAL_PLUS_USTEPS        506
+#define LW_ADDRESS_REVERSAL_MINUS_USTEPS       507
+#define LW_ADDRESS_OVERSHOOT_ACTUAL_UM         508
+#define LW_ADDRESS_SLOPE_ERROR_PPM             510
+#define LW_ADDRESS_OVERSHOOT_ERROR_UM          512
+#define LW_ADDRESS_EDGES_PER_1000_DRUM_REVS    514
+#define LW_ADDRESS_DWELL_PLUS_EDGES            516
+#define LW_ADDRESS_DWELL_MINUS_EDGES           518
 
 /* Block bench: holding registers. */
 #define LW_ADDRESS_BENCH_ARGUMENT                         61440
@@ -767,6 +809,9 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_BENCH_TRIGGER_DIRECTION                61458
 #define LW_ADDRESS_BENCH_TRIGGER_ARGUMENT                 61459
 #define LW_ADDRESS_BENCH_TRIGGER_FAULT                    61461
+#define LW_ADDRESS_BENCH_STEPPER_ALARM                    61462
+#define LW_ADDRESS_BENCH_HANG                             61463
+#define LW_ADDRESS_BENCH_RESTART                          61464
 #define LW_ADDRESS_BENCH_RESULT                           61469
 #define LW_ADDRESS_BENCH_CARRIAGE_UM                      61470
 #define LW_ADDRESS_BENCH_CARRIAGE_MM_PER_S                61472
@@ -1045,6 +1090,30 @@ struct lw_status {
 	int32_t slot_2;
 	/** Storage: second slot of event log and counters (enum lw_slot_state) */
 	int32_t slot_3;
+	/**
+	 * Longest time in the encoder interrupt since power-up, without the operating system's
+	 * share (0: not measured) [ns]
+	 */
+	uint32_t encoder_interrupt_max_ns;
+	/**
+	 * Encoder interrupts that found nothing changed: transitions came closer than the interrupt
+	 * is fast
+	 */
+	uint32_t late_interrupts;
+	/** Index pulses (Z) of the encoder since power-up (0: not wired, or it has not turned) */
+	uint32_t encoder_index_pulses;
+	/** Edges that were missing, or too many, between index pulses since power-up [edges] */
+	uint32_t missed_edges;
+	/** Stack that the supervisor has never used (0: not measured) [bytes] */
+	int32_t stack_free_supervisor_bytes;
+	/** Stack that the limits thread has never used (0: not measured) [bytes] */
+	int32_t stack_free_limits_bytes;
+	/** Stack that the Modbus thread has never used (0: not measured) [bytes] */
+	int32_t stack_free_modbus_bytes;
+	/** Stack that the storage work queue has never used (0: not measured) [bytes] */
+	int32_t stack_free_storage_bytes;
+	/** Stack that the interrupts have never used (0: not measured) [bytes] */
+	int32_t stack_free_interrupts_bytes;
 	/** Counts every command, also refused ones */
 	int32_t command_sequence;
 	/** The last command (enum lw_command) */
@@ -1132,6 +1201,15 @@ struct lw_bench {
 	int32_t bench_trigger_argument;
 	/** Writing it arms the fault; reads 0 once released (enum lw_trigger_fault) */
 	int32_t bench_trigger_fault;
+	/** 1 lets the stepper driver report an alarm and switch its motor off */
+	int32_t bench_stepper_alarm;
+	/**
+	 * Writing a code hangs that thread; refused by the simulator, which has none (enum
+	 * lw_bench_thread)
+	 */
+	int32_t bench_hang;
+	/** The last restart by the watchdog, as the stepper saw it (enum lw_bench_restart) */
+	int32_t bench_restart;
 	/**
 	 * 0: the last bench command or armed fault was accepted; else the POSIX error number why
 	 * not
@@ -1175,7 +1253,7 @@ extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
  */
 extern const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT];
 
-#define LW_MAP_STATUS_COUNT 79
+#define LW_MAP_STATUS_COUNT 88
 
 /**
  * Identity, live status, LOS records, counters, command results and derived values: input
@@ -1183,7 +1261,7 @@ extern const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT];
  */
 extern const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT];
 
-#define LW_MAP_BENCH_COUNT 27
+#define LW_MAP_BENCH_COUNT 30
 
 /**
  * The simulated plant (only in builds that have one): holding registers, offsets in struct lw_bench
@@ -1195,7 +1273,7 @@ extern const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT];
 /** Coils, indexed by address */
 extern const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT];
 
-#define LW_MAP_DISCRETES_COUNT 30
+#define LW_MAP_DISCRETES_COUNT 31
 
 /** Discrete inputs, indexed by address */
 extern const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT];

@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "lw/bank.h"
+#include "lw/encoder_index.h"
 #include "lw/limit_switch.h"
 #include "lw/map.h"
 #include "lw/motion.h"
@@ -35,6 +36,7 @@ struct lw_inputs {
 		bool nc_closed;
 	} limit[2];         /**< by side */
 	bool overtravel[2]; /**< by side, true: actuated */
+	bool stepper_alarm;
 };
 
 /** One kind of LOS on one side. */
@@ -50,13 +52,15 @@ struct lw_controller {
 	const struct lw_params *params;   /**< active set */
 	const struct lw_derived *derived; /**< what follows from it */
 
-	struct lw_motion motion;         /**< see lw/motion.h */
-	struct lw_law_window windows[2]; /**< one in force, one to prepare the next */
-	struct lw_quadrature quadrature; /**< written by the encoder interrupt */
+	struct lw_motion motion;               /**< see lw/motion.h */
+	struct lw_law_window windows[2];       /**< one in force, one to prepare the next */
+	struct lw_quadrature quadrature;       /**< written by the encoder interrupt */
+	struct lw_encoder_index encoder_index; /**< see lw/encoder_index.h */
 	struct lw_limit_switch limit[2]; /**< written by the limit-switch interrupts and ticks */
 	struct lw_limit_switch_config limit_config;
 	bool overtravel[2]; /**< written by the overtravel interrupts */
 	bool wiring[2];     /**< sticky wiring faults */
+	bool stepper_alarm; /**< told by the owner */
 
 	enum lw_state state;
 	enum lw_mode mode;           /**< in force */
@@ -144,6 +148,9 @@ LW_EDGE_INLINE int lw_controller_encoder(struct lw_controller *controller, bool 
 	return dd == 0 ? 0 : lw_motion_encoder_edge(&controller->motion, dd);
 }
 
+/** Take the beginning of the encoder's index pulse. For its interrupt. */
+void lw_controller_encoder_index(struct lw_controller *controller);
+
 /**
  * Take one edge of the edge timer. For its interrupt.
  *
@@ -157,6 +164,9 @@ void lw_controller_limit(struct lw_controller *controller, int side, bool no_clo
 
 /** Take an overtravel switch after a change. For its interrupt. Stops steps that way at once. */
 void lw_controller_overtravel(struct lw_controller *controller, int side, bool actuated);
+
+/** Tell whether the stepper driver reports an alarm. The next tick stops for it. */
+void lw_controller_stepper_alarm(struct lw_controller *controller, bool alarm);
 
 /** Supervise. Call every LW_CONTROLLER_TICK_US. */
 void lw_controller_tick(struct lw_controller *controller, uint64_t now_us);

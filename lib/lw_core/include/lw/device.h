@@ -33,6 +33,16 @@ enum {
 	LW_DEVICE_LOG_FILE = 1, /**< number of the event log: LW_LOG_RECORD_WORDS for each event */
 };
 
+/** What the host measures of itself; 0 where it cannot. */
+struct lw_device_health {
+	uint32_t encoder_interrupt_max_ns;
+	uint16_t stack_free_supervisor_bytes;
+	uint16_t stack_free_limits_bytes;
+	uint16_t stack_free_modbus_bytes;
+	uint16_t stack_free_storage_bytes;
+	uint16_t stack_free_interrupts_bytes;
+};
+
 /** What the host is. */
 struct lw_device_config {
 	enum lw_host host;
@@ -104,6 +114,8 @@ struct lw_device {
 	struct lw_line_trial line_trial;
 
 	struct lw_device_command command;
+
+	struct lw_device_health health; /**< written by the host */
 
 	struct lw_device_seen seen;
 	uint64_t journal_due_us;        /**< when events that are not stored yet shall be */

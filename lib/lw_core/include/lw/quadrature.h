@@ -25,6 +25,8 @@ struct lw_quadrature {
 	int8_t counts[16]; /**< what a transition counts, by levels before * 4 + levels now */
 	/** Both channels changed at once; written by the interrupt. */
 	uint32_t illegal_transitions;
+	/** Nothing had changed: the levels came back, or were seen by the interrupt before. */
+	uint32_t late_interrupts;
 };
 
 /** Decode as `config` says from now on. A transition meanwhile counts as before or as after. */
@@ -53,6 +55,8 @@ LW_EDGE_INLINE int lw_quadrature_update(struct lw_quadrature *quadrature, bool a
 	quadrature->levels = (uint8_t)now;
 	if (dd == 0 && (before ^ now) == 3) {
 		quadrature->illegal_transitions++;
+	} else if (before == now) {
+		quadrature->late_interrupts++;
 	}
 	return dd;
 }

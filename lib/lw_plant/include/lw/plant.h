@@ -63,6 +63,8 @@ enum lw_plant_changed {
 	LW_PLANT_LIMIT_MINUS = 1 << 3,
 	LW_PLANT_OVERTRAVEL_PLUS = 1 << 4,
 	LW_PLANT_OVERTRAVEL_MINUS = 1 << 5,
+	LW_PLANT_ENCODER_INDEX = 1 << 6,
+	LW_PLANT_STEPPER_ALARM = 1 << 7,
 };
 
 /** Physical constants. Fill with lw_plant_config_default(), then change what differs. */
@@ -119,6 +121,10 @@ struct lw_plant_pins {
 	/** Quadrature channels; A leads B when the drum hauls in. */
 	bool encoder_a;
 	bool encoder_b;
+	/** Index pulse of the encoder: one transition long, once per encoder revolution. */
+	bool encoder_index;
+	/** The stepper driver reports an alarm. */
+	bool stepper_alarm;
 	/** Contacts of the change-over limit switches. Actuated: NO closed, NC open. */
 	struct {
 		bool no_closed;
@@ -159,6 +165,8 @@ enum lw_plant_fault {
 	LW_PLANT_FAULT_CARRIAGE_REVERSED,
 	/** Show N whole pulses (4 transitions each, 20 us apart) that the drum has not made. */
 	LW_PLANT_FAULT_ENCODER_EXTRA_PULSES,
+	/** 1: the stepper driver reports an alarm, and its motor has no current; 0: it works. */
+	LW_PLANT_FAULT_STEPPER_ALARM,
 	LW_PLANT_FAULT_COUNT,
 };
 
@@ -229,6 +237,8 @@ struct lw_plant_drum {
 	int64_t transitions;
 	int64_t held_transitions;
 	int64_t extra_transitions;
+	int32_t transitions_per_encoder_rev;
+	int32_t past_index;
 	double transitions_per_milli_rpm_s;
 	double acceleration_milli_rpm_per_s;
 	double speed_milli_rpm;
@@ -270,6 +280,7 @@ struct lw_plant_carriage {
 	double flange_usteps;
 	double usteps_per_um;
 	bool enabled;
+	bool alarm;
 	bool reversed;
 };
 

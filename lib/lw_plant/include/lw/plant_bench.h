@@ -17,6 +17,8 @@
 struct lw_plant_bench {
 	struct lw_plant *plant;
 	bool power_cut; /**< the controller shall be restarted; its host clears it */
+	bool threads;   /**< the controller runs in threads that can hang; its host sets it */
+	enum lw_bench_thread hang; /**< the thread that shall hang */
 
 	struct lw_bench registers; /**< private: set-points, and image of what can be read */
 	struct lw_plant_profile_point profile[LW_PLANT_PROFILE_POINTS_MAX]; /**< private */

@@ -1,0 +1,118 @@
+#include "watch.h"
+
+#include <zephyr/drivers/hwinfo.h>
+#include <zephyr/sys/reboot.h>
+#include <zephyr/task_wdt/task_wdt.h>
+
+#include "app.h"
+#include "machine.h"
+#ifdef CONFIG_LW_SIMULATED_MACHINE
+#include "simulated_machine.h"
+#endif
+
+/** `watch_note` after a restart by the watchdog; anything else is what the power-up has left. */
+#define NOTE_WATCHDOG     0x77617463u
+#define NOTE_WITH_CURRENT (NOTE_WATCHDOG + 1) /**< the simulated stepper still had current */
+
+__noinit uint32_t watch_note;
+
+K_KERNEL_STACK_ARRAY_DECLARE(z_interrupt_stacks, CONFIG_MP_MAX_NUM_CPUS, CONFIG_ISR_STACK_SIZE);
+
+static bool by_watchdog;
+static int channels[WATCH_THREADS];
+static k_tid_t threads[WATCH_THREADS]; /**< each written by the thread itself, once */
+
+/** In the system timer's interrupt. */
+static void restart(int channel, void *user_data)
+{
+	ARG_UNUSED(channel);
+	ARG_UNUSED(user_data);
+	(void)irq_lock();
+	machine_stop();
+	watch_note = NOTE_WATCHDOG;
+#ifdef CONFIG_LW_SIMULATED_MACHINE
+	if (simulated_machine_has_current()) {
+		watch_note = NOTE_WITH_CURRENT;
+	}
+#endif
+	sys_reboot(SYS_REBOOT_COLD);
+}
+
+int watch_start(void)
+{
+	const struct device *const watchdog = DEVICE_DT_GET_OR_NULL(DT_PHANDLE(APP_NODE, watchdog));
+
+	by_watchdog = watch_note == NOTE_WATCHDOG || watch_note == NOTE_WITH_CURRENT;
+#ifdef CONFIG_LW_SIMULATED_MACHINE
+	simulated_machine_note_restart(!by_watchdog ? LW_BENCH_RESTART_NONE
+				       : watch_note == NOTE_WITH_CURRENT
+					       ? LW_BENCH_RESTART_WITH_CURRENT
+					       : LW_BENCH_RESTART_WITHOUT_CURRENT);
+#endif
+	watch_note = 0;
+#ifdef CONFIG_HWINFO
+	uint32_t cause;
+
+	if (hwinfo_get_reset_cause(&cause) == 0) {
+		by_watchdog |= (cause & RESET_WATCHDOG) != 0;
+		(void)hwinfo_clear_reset_cause();
+	}
+#endif
+	return task_wdt_init(watchdog);
+}
+
+bool watch_has_restarted(void)
+{
+	return by_watchdog;
+}
+
+int watch_add(enum watch_thread thread)
+{
+	channels[thread] = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, restart, NULL);
+	return MIN(channels[thread], 0);
+}
+
+void watch_report(enum watch_thread thread)
+{
+	threads[thread] = k_current_get();
+#ifdef CONFIG_LW_SIMULATED_MACHINE
+	simulated_machine_hang(thread);
+#endif
+	(void)task_wdt_feed(channels[thread]);
+}
+
+/** The processor begins at the far end: count from the near one. */
+static uint16_t interrupt_stack_free_bytes(void)
+{
+	const uint8_t *stack = K_KERNEL_STACK_BUFFER(z_interrupt_stacks[0]);
+	uint16_t free_bytes = 0;
+
+	while (free_bytes < CONFIG_ISR_STACK_SIZE && stack[free_bytes] == 0xAA) {
+		free_bytes++;
+	}
+	return free_bytes;
+}
+
+void watch_measure_stacks(struct lw_device_health *health)
+{
+	static uint8_t next;
+	uint16_t *const free_bytes[WATCH_THREADS + 1] = {
+		[WATCH_SUPERVISOR] = &health->stack_free_supervisor_bytes,
+		[WATCH_LIMITS] = &health->stack_free_limits_bytes,
+		[WATCH_MODBUS] = &health->stack_free_modbus_bytes,
+		[WATCH_STORAGE] = &health->stack_free_storage_bytes,
+		[WATCH_THREADS] = &health->stack_free_interrupts_bytes,
+	};
+	size_t count = 0;
+
+	if (IS_ENABLED(CONFIG_ARCH_POSIX)) {
+		return; /* its threads run on stacks of the host */
+	}
+	if (next == WATCH_THREADS) {
+		count = interrupt_stack_free_bytes();
+	} else if (threads[next] != NULL) {
+		(void)k_thread_stack_space_get(threads[next], &count);
+	}
+	*free_bytes[next] = (uint16_t)count;
+	next = (uint8_t)((next + 1) % ARRAY_SIZE(free_bytes));
+}
