@@ -62,10 +62,16 @@ def start_simulator(folder: Path, storage: Path, fast: bool) -> Simulator:
 
 def start_native_sim(folder: Path, storage: Path, fast: bool) -> Simulator:
     del folder
-    firmware_end, port = join_terminals()
+    return start_native_sim_on(NullModem(), storage, speed=4 if fast else 1)
+
+
+def start_native_sim_on(line: "NullModem", storage: Path, *, speed: int) -> Simulator:
+    """Its time passes `speed` times as fast as ours."""
     process = subprocess.Popen(
-        [str(NATIVE_SIM), f"-modbus-uart_port={firmware_end}", f"-flash={storage}", "-rt"]
-        + ["-rt-ratio=4"] * fast,
+        [
+            *(str(NATIVE_SIM), f"-modbus-uart_port={line.firmware_end}", f"-flash={storage}"),
+            *("-rt", f"-rt-ratio={speed}"),
+        ],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         text=True,
@@ -75,13 +81,13 @@ def start_native_sim(folder: Path, storage: Path, fast: bool) -> Simulator:
     while not said or "connected to the serial port" not in said[-1]:
         said.append(process.stdout.readline())
         assert said[-1], f"the firmware said {said!r}"
-    return Simulator(port, process)
+    return Simulator(line.port, process)
 
 
 def start_qemu(folder: Path, storage: Path, fast: bool) -> Simulator:
     """The emulator keeps neither parameters nor a clock that could be made faster."""
     del storage, fast
-    firmware_end, port = join_terminals()
+    line = NullModem()
     process = subprocess.Popen(
         [
             *("qemu-system-arm", "-machine", "mps2-an385", "-cpu", "cortex-m3", "-nographic"),
@@ -89,31 +95,46 @@ def start_qemu(folder: Path, storage: Path, fast: bool) -> Simulator:
             *("-icount", "shift=4,align=off,sleep=on"),
             *("-monitor", "none", "-kernel", str(QEMU_IMAGE)),
             *("-serial", f"file:{folder / 'console.log'}"),
-            *("-chardev", f"serial,id=modbus,path={firmware_end}", "-serial", "chardev:modbus"),
+            *(
+                "-chardev",
+                f"serial,id=modbus,path={line.firmware_end}",
+                "-serial",
+                "chardev:modbus",
+            ),
         ],
         stdin=subprocess.DEVNULL,
         text=True,
     )
-    return Simulator(port, process)
+    return Simulator(line.port, process)
 
 
-def join_terminals() -> tuple[Path, Path]:
-    """A null modem: two pseudo terminals that stay, whoever opens and closes them."""
-    masters = []
-    paths = []
-    for _ in range(2):
-        master, slave = os.openpty()
-        tty.setraw(slave)  # and never closed, or the master would see a hang-up
-        masters.append(master)
-        paths.append(Path(os.ttyname(slave)))
+class NullModem:
+    """Two pseudo terminals, each the other's far end, that stay whoever opens and closes them."""
 
-    def copy() -> None:
-        while True:
-            for ready in select.select(masters, [], [])[0]:
-                os.write(masters[1 - masters.index(ready)], os.read(ready, 4096))
+    def __init__(self) -> None:
+        self._masters = []
+        self._slaves = []
+        for _ in range(2):
+            master, slave = os.openpty()
+            tty.setraw(slave)  # and kept open, or the master would see a hang-up
+            self._masters.append(master)
+            self._slaves.append(slave)
+        self.firmware_end, self.port = (Path(os.ttyname(slave)) for slave in self._slaves)
+        self._stopped, self._stop = os.pipe()
+        threading.Thread(target=self._copy, daemon=True).start()
 
-    threading.Thread(target=copy, daemon=True).start()
-    return paths[0], paths[1]
+    def close(self) -> None:
+        """Take it away, with all that is still in it."""
+        os.close(self._stop)
+
+    def _copy(self) -> None:
+        ready: list[int] = []
+        while self._stopped not in ready:
+            for master in ready:
+                os.write(self._masters[1 - self._masters.index(master)], os.read(master, 4096))
+            ready = select.select([*self._masters, self._stopped], [], [])[0]
+        for file in (*self._masters, *self._slaves, self._stopped):
+            os.close(file)
 
 
 def decode(point: Point, registers: list[int]) -> int:
