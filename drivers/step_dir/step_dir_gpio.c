@@ -6,15 +6,14 @@
 #include <zephyr/kernel.h>
 
 #include "lw/drivers/step_dir.h"
+#include "step_dir_pins.h"
 
 /** Longest time that a step may wait inside of its interrupt. */
 #define WAIT_MAX_NS 1000
 
 struct step_dir_config {
 	struct gpio_dt_spec step;
-	struct gpio_dt_spec dir;
-	struct gpio_dt_spec enable; /**< port is NULL where it is not wired */
-	struct gpio_dt_spec alarm;  /**< port is NULL where it is not wired */
+	struct step_dir_pins pins;
 	uint32_t dir_setup_ns;
 	uint32_t step_pulse_ns;
 	/** After a pulse: its space, and the hold time of the direction, whichever is longer. */
@@ -53,7 +52,7 @@ static void step_dir_step(const struct device *dev, int direction)
 
 	if (direction != data->direction) {
 		data->direction = direction;
-		(void)gpio_pin_set_dt(&config->dir, direction > 0);
+		(void)gpio_pin_set_dt(&config->pins.dir, direction > 0);
 		wait_ns(config->dir_setup_ns);
 	}
 	(void)gpio_pin_set_dt(&config->step, 1);
@@ -68,41 +67,20 @@ static void step_dir_step(const struct device *dev, int direction)
 
 static int step_dir_enable(const struct device *dev, bool enabled)
 {
-	const struct step_dir_config *config = dev->config;
-
-	return config->enable.port == NULL ? 0 : gpio_pin_set_dt(&config->enable, enabled);
+	return step_dir_pins_enable(&((const struct step_dir_config *)dev->config)->pins, enabled);
 }
 
 static int step_dir_alarm(const struct device *dev)
 {
-	const struct step_dir_config *config = dev->config;
-
-	return config->alarm.port == NULL ? -ENOTSUP : gpio_pin_get_dt(&config->alarm);
-}
-
-static int configure(const struct gpio_dt_spec *pin, gpio_flags_t flags)
-{
-	if (pin->port == NULL) {
-		return 0;
-	}
-	return gpio_is_ready_dt(pin) ? gpio_pin_configure_dt(pin, flags) : -ENODEV;
+	return step_dir_pins_alarm(&((const struct step_dir_config *)dev->config)->pins);
 }
 
 static int step_dir_init(const struct device *dev)
 {
 	const struct step_dir_config *config = dev->config;
-	int ret = configure(&config->enable, GPIO_OUTPUT_INACTIVE);
+	const int ret = step_dir_pins_configure(&config->pins);
 
-	if (ret == 0) {
-		ret = configure(&config->step, GPIO_OUTPUT_INACTIVE);
-	}
-	if (ret == 0) {
-		ret = configure(&config->dir, GPIO_OUTPUT_INACTIVE);
-	}
-	if (ret == 0) {
-		ret = configure(&config->alarm, GPIO_INPUT);
-	}
-	return ret;
+	return ret ? ret : step_dir_pin_configure(&config->step, GPIO_OUTPUT_INACTIVE);
 }
 
 static const struct lw_step_dir_api step_dir_api = {
@@ -120,9 +98,7 @@ static const struct lw_step_dir_api step_dir_api = {
 		     "too slow for levelwind,step-dir-gpio: use a driver with a timer");           \
 	static const struct step_dir_config step_dir_config_##inst = {                             \
 		.step = GPIO_DT_SPEC_INST_GET(inst, step_gpios),                                   \
-		.dir = GPIO_DT_SPEC_INST_GET(inst, dir_gpios),                                     \
-		.enable = GPIO_DT_SPEC_INST_GET_OR(inst, enable_gpios, {0}),                       \
-		.alarm = GPIO_DT_SPEC_INST_GET_OR(inst, alarm_gpios, {0}),                         \
+		.pins = STEP_DIR_PINS(inst),                                                       \
 		.dir_setup_ns = DT_INST_PROP(inst, dir_setup_ns),                                  \
 		.step_pulse_ns = DT_INST_PROP(inst, step_pulse_ns),                                \
 		.rest_ns = REST_NS(inst),                                                          \
