@@ -30,12 +30,9 @@ static const struct device *const switches[] = {
 
 static struct change change_now(int side, struct lw_contacts contacts)
 {
-	const struct lw_motion *motion = &app_device.controller.motion;
-
 	return (struct change){
 		.now_us = app_now_us(),
-		.at = {.pos_usteps = lw_law_pos_usteps(lw_motion_m(motion)),
-		       .direction = (int8_t)lw_motion_direction(motion)},
+		.at = lw_controller_place(&app_device.controller),
 		.contacts = contacts,
 		.side = (uint8_t)side,
 	};

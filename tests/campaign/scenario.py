@@ -326,7 +326,7 @@ def _machine(s: Scenario, rng: random.Random) -> None:
     s.carriage_um = rng.choice((0, rng.randint(-89_000, 89_000)))
     s.harmless = abs(s.carriage_um) < 85_000  # else it begins with overtravel
     edges_per_pulse = rng.choice((2, 2, 2, 2, 2, 2, 2, 2, 1, 4))
-    index_rate = rng.choice((5000, *6 * (20_000,))) * edges_per_pulse
+    index_rate = rng.choice((5000, *12 * (20_000,))) * edges_per_pulse
     parameters = {
         "encoder_edges_per_pulse": edges_per_pulse,
         "overspeed_warning_edges_per_s": 26_000 * edges_per_pulse,
@@ -369,11 +369,11 @@ def _mixed_launch(s: Scenario, rng: random.Random) -> None:
         _index(s)
     s.drum(rng.choice((1, 1, 1, -1)) * rng.randint(2_000, 48_000), _size(rng, 10_000, 500_000))
     for fault in faults[1:] if early else faults:
-        s.run(rng.randint(0, 2500))
+        s.run(rng.randint(0, 2000))
         FAULTS[fault](s, _place(rng))
-    s.run(rng.randint(1000, 4000))
+    s.run(rng.randint(500, 3000))
     s.drum(rng.choice((1, 1, -1)) * rng.randint(5_000, 48_000), 50_000)
-    s.run(4500)
+    s.run(3500)
 
 
 def _grid_launch(s: Scenario, cell: int, rng: random.Random) -> None:
@@ -385,7 +385,7 @@ def _grid_launch(s: Scenario, cell: int, rng: random.Random) -> None:
     FAULTS[fault](s, Place(position_um, direction, rng))
     s.run(3000)
     s.drum(speed, 48_000)
-    s.run(min(14_000, 200_000_000 // abs(speed)))
+    s.run(min(12_000, 150_000_000 // abs(speed)))
 
 
 def scenario(seed: int) -> Scenario:
@@ -397,7 +397,7 @@ def scenario(seed: int) -> Scenario:
         _grid_launch(s, seed // 4, rng)
     else:
         _mixed_launch(s, rng)
-    if rng.random() < 0.3:  # repaired, and indexed again
+    if rng.random() < 0.2:  # repaired, and indexed again
         s.rest()
         for switch in (PlantFault.LIMIT_PLUS, PlantFault.LIMIT_MINUS):
             s.inject(switch, SwitchFault.NONE)

@@ -193,6 +193,35 @@ static void test_los2_of_a_carriage_that_lags_is_found_in_the_reversal(void)
 	TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
 }
 
+static void test_a_second_trigger_before_the_correction_is_corrected_once(void)
+{
+	for (int made_before_the_tick = 0; made_before_the_tick < 2; made_before_the_tick++) {
+		/* It triggers inside the reversal, where the correction has to wait. */
+		go_to_the_middle(LW_PLUS, 1);
+		slip(-250);
+		rig_follow_to(7840, 1, SPEED);
+		rig_ticks(2);
+		TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los_recoveries);
+		/* The drum turns back until the switch releases, and on until it triggers again. */
+		rig_follow_to(7780, -1, -SPEED);
+		TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_CORRECTION,
+					rig.controller->motion.requests);
+		while (!rig.actuated[LW_PLUS]) {
+			rig_turn(1);
+		}
+		/* Out of the reversal before, or after, the tick learns of it. */
+		if (made_before_the_tick) {
+			while (rig.controller->motion.requests) {
+				rig_turn(-1);
+			}
+		}
+		rig_follow_to(5000, -1, -SPEED);
+		TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+		TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
+		TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los_recoveries);
+	}
+}
+
 static void test_within_the_tolerance_nothing_happens(void)
 {
 	for (int sign = -1; sign <= 1; sign += 2) {
@@ -388,6 +417,7 @@ int main(void)
 	RUN_TEST(test_los1_counts_each_visit_and_keeps_the_first);
 	RUN_TEST(test_los2_re_indexes_on_either_side_with_either_drum_direction);
 	RUN_TEST(test_los2_of_a_carriage_that_lags_is_found_in_the_reversal);
+	RUN_TEST(test_a_second_trigger_before_the_correction_is_corrected_once);
 	RUN_TEST(test_within_the_tolerance_nothing_happens);
 	RUN_TEST(test_a_trigger_counts_only_toward_its_switch);
 	RUN_TEST(test_only_an_index_clears_los);

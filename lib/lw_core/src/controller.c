@@ -150,16 +150,27 @@ int lw_controller_timer_edge(struct lw_controller *controller)
 	return lw_motion_timer_edge(&controller->motion);
 }
 
+struct lw_limit_switch_trigger lw_controller_place(const struct lw_controller *controller)
+{
+	const struct lw_motion *motion = &controller->motion;
+	const volatile int32_t *corrected_usteps = &motion->corrected_usteps;
+	struct lw_limit_switch_trigger at;
+
+	do {
+		at = (struct lw_limit_switch_trigger){
+			.corrected_usteps = *corrected_usteps,
+			.pos_usteps = lw_law_pos_usteps(lw_motion_m(motion)),
+			.direction = (int8_t)lw_motion_direction(motion),
+		};
+	} while (at.corrected_usteps != *corrected_usteps);
+	return at;
+}
+
 void lw_controller_limit(struct lw_controller *controller, int side, bool no_closed, bool nc_closed,
 			 uint64_t now_us)
 {
-	const struct lw_limit_switch_trigger at = {
-		.pos_usteps = lw_law_pos_usteps(lw_motion_m(&controller->motion)),
-		.direction = (int8_t)lw_motion_direction(&controller->motion),
-	};
-
 	lw_limit_switch_input(&controller->limit[side], &controller->limit_config, no_closed,
-			      nc_closed, at, now_us);
+			      nc_closed, lw_controller_place(controller), now_us);
 }
 
 void lw_controller_overtravel(struct lw_controller *controller, int side, bool actuated)

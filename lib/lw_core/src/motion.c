@@ -166,6 +166,7 @@ static void correct(struct lw_motion *motion)
 	}
 	motion->law.rel += (uint32_t)correction * LW_USTEP;
 	motion->request_correction_usteps -= correction;
+	motion->corrected_usteps += correction;
 	if (motion->request_correction_usteps == 0) {
 		motion->requests &= (uint8_t)~LW_MOTION_REQUEST_CORRECTION;
 	}

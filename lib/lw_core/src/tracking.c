@@ -70,21 +70,42 @@ static void record(const struct lw_controller *controller, struct lw_los_record 
 	}
 }
 
-/** A switch triggered on the way to its reversal: is it where it was calibrated? */
-static void judge_trigger(struct lw_controller *controller, int side, int32_t pos_usteps)
+/**
+ * How far the position of a trigger is past its switch, with every correction in it that has been
+ * made since and that is still to be made: what neither of them explains.
+ */
+static int32_t error_usteps(const struct lw_controller *controller, int side,
+			    const struct lw_limit_switch_trigger *at)
 {
-	const struct lw_derived *derived = controller->derived;
-	const int32_t error = pos_usteps - derived->switch_usteps[side];
+	const struct lw_motion *motion = &controller->motion;
+	const volatile int32_t *corrected_usteps = &motion->corrected_usteps;
+	const volatile int32_t *waiting_usteps = &motion->request_correction_usteps;
+	int32_t corrected;
+	int32_t waiting;
+
+	do {
+		corrected = *corrected_usteps;
+		waiting = *waiting_usteps;
+	} while (corrected != *corrected_usteps);
+	return at->pos_usteps - at->corrected_usteps + corrected + waiting -
+	       controller->derived->switch_usteps[side];
+}
+
+/** A switch triggered on the way to its reversal: is it where it was calibrated? */
+static void judge_trigger(struct lw_controller *controller, int side,
+			  const struct lw_limit_switch_trigger *at)
+{
+	const int32_t tolerance = controller->derived->switch_tolerance_usteps;
+	const int32_t error = error_usteps(controller, side, at);
 	const int32_t recoveries_max = controller->params->los_recoveries_max;
 	struct lw_motion *motion = &controller->motion;
 
 	controller->seen[side] = true;
-	if (error <= derived->switch_tolerance_usteps &&
-	    error >= -derived->switch_tolerance_usteps) {
+	if (error <= tolerance && error >= -tolerance) {
 		return;
 	}
 
-	record(controller, &controller->los2[side], pos_usteps * LW_USTEP);
+	record(controller, &controller->los2[side], at->pos_usteps * LW_USTEP);
 	if (controller->los_recoveries < UINT16_MAX) {
 		controller->los_recoveries++;
 	}
@@ -92,9 +113,9 @@ static void judge_trigger(struct lw_controller *controller, int side, int32_t po
 		lw_controller_fail(controller, LW_FAULT_LOS_LIMIT);
 		return;
 	}
-	/* Withdraw an older correction first: this one replaces it. */
+	/* Withdraw what is left of an older correction, to change it. */
 	motion->requests &= (uint8_t)~LW_MOTION_REQUEST_CORRECTION;
-	motion->request_correction_usteps = -error;
+	motion->request_correction_usteps -= error;
 	lw_motion_request(motion, LW_MOTION_REQUEST_CORRECTION);
 }
 
@@ -142,7 +163,7 @@ void lw_tracking_tick(struct lw_controller *controller,
 		/* A trigger counts only when the carriage moves toward its switch. */
 		if (triggers[side].taken &&
 		    lw_controller_moves_toward(triggers[side].at.direction, side)) {
-			judge_trigger(controller, side, triggers[side].at.pos_usteps);
+			judge_trigger(controller, side, &triggers[side].at);
 		}
 	}
 	for (int side = 0; side < 2 && controller->state == LW_STATE_TRACKING; side++) {

@@ -158,6 +158,9 @@ void lw_controller_encoder_index(struct lw_controller *controller);
  */
 int lw_controller_timer_edge(struct lw_controller *controller);
 
+/** Where the carriage is now, for a contact that closes. For the limit-switch interrupt. */
+struct lw_limit_switch_trigger lw_controller_place(const struct lw_controller *controller);
+
 /** Take the contacts of a limit switch after a change. For the limit-switch interrupt. */
 void lw_controller_limit(struct lw_controller *controller, int side, bool no_closed, bool nc_closed,
 			 uint64_t now_us);

@@ -24,7 +24,8 @@ struct lw_limit_switch_config {
 /** Position and direction at a contact closure. */
 struct lw_limit_switch_trigger {
 	int32_t pos_usteps;
-	int8_t direction; /**< carriage direction at that moment: +1, 0, -1 */
+	int32_t corrected_usteps; /**< lw_motion's at that moment: what came later is not in it */
+	int8_t direction;         /**< carriage direction at that moment: +1, 0, -1 */
 };
 
 /**

@@ -69,7 +69,8 @@ struct lw_motion {
 	_Atomic uint8_t requests; /**< enum lw_motion_request; set by lw_motion_request() */
 	const struct lw_law_window *request_window; /**< written by the supervisor */
 	int32_t request_correction_usteps; /**< written by the supervisor; the interrupt counts it
-					    *   down as it applies it */
+					    *   down as it applies it; 0 when none waits */
+	int32_t corrected_usteps;          /**< sum of what it has applied */
 	/* The supervisor's: counters of the interrupt, continued in 64 bit. */
 	int64_t net_edges;      /**< odometer: all drum edges, at the last lw_motion_count() */
 	int64_t followed_edges; /**< those that moved the carriage, likewise */
