@@ -3,17 +3,9 @@
 from collections.abc import Callable
 
 import pytest
-from levelwind.map_table import Command, Mode, Reason, State
+from command_rules import DOCUMENT, STATES, WRITES, document, expected_refusal
+from levelwind.map_table import Command, Mode, State
 from world import RequestRefusedError, World
-
-MOVING = {
-    *(State.BACKING_OFF, State.SEEKING, State.INDEX_REVERSAL, State.SPAN_CHECK, State.PARKING),
-    *(State.CENTRING, State.JOGGING),
-}
-SET_COMMANDS = {
-    *(Command.APPLY, Command.REVERT, Command.SAVE),
-    *(Command.FACTORY_MOTION, Command.FACTORY_LINE, Command.FACTORY_ALL, Command.TRY_LINE),
-}
 
 
 def indexing(state: State) -> Callable[[], World]:
@@ -91,76 +83,39 @@ def moved_in_fault() -> World:
     return world
 
 
-STATES: dict[str, tuple[State, Callable[[], World]]] = {
-    "unindexed": (State.UNINDEXED, World),
-    "backing_off": (State.BACKING_OFF, indexing(State.BACKING_OFF)),
-    "seeking": (State.SEEKING, indexing(State.SEEKING)),
-    "index_reversal": (State.INDEX_REVERSAL, indexing(State.INDEX_REVERSAL)),
-    "span_check": (State.SPAN_CHECK, indexing(State.SPAN_CHECK)),
-    "parking": (State.PARKING, indexing(State.PARKING)),
-    "ready": (State.READY, stopped),
-    "tracking": (State.TRACKING, lambda: World().index()),
-    "tracking_turning": (State.TRACKING, turning),
-    "centring": (State.CENTRING, centring),
-    "centred": (State.CENTRED, centred),
-    "jogging": (State.JOGGING, jogging),
-    "off": (State.OFF, off),
-    "fault": (State.FAULT, overtravelled),
-    "fault_turning": (State.FAULT, moved_in_fault),
+def with_the_drum_turning(make: Callable[[], World]) -> Callable[[], World]:
+    """The same, and then the drum is turned."""
+
+    def make_turning() -> World:
+        world = make()
+        world.drum(5_000)
+        world.run(1.0)
+        return world
+
+    return make_turning
+
+
+MAKE: dict[str, Callable[[], World]] = {
+    "unindexed": World,
+    "unindexed_turning": with_the_drum_turning(World),
+    "backing_off": indexing(State.BACKING_OFF),
+    "seeking": indexing(State.SEEKING),
+    "index_reversal": indexing(State.INDEX_REVERSAL),
+    "span_check": indexing(State.SPAN_CHECK),
+    "parking": indexing(State.PARKING),
+    "ready": stopped,
+    "ready_turning": with_the_drum_turning(stopped),
+    "tracking": lambda: World().index(),
+    "tracking_turning": turning,
+    "centring": centring,
+    "centred": centred,
+    "centred_turning": with_the_drum_turning(centred),
+    "jogging": jogging,
+    "off": off,
+    "off_turning": with_the_drum_turning(off),
+    "fault": overtravelled,
+    "fault_turning": moved_in_fault,
 }
-
-
-def busy(state: State) -> Reason | None:
-    """Why what needs a standing carriage is refused."""
-    if state == State.TRACKING:
-        return Reason.BUSY_TRACKING
-    return Reason.BUSY_MOVING if state in MOVING else None
-
-
-def jog_refusal(name: str, state: State, direction: int) -> Reason | None:
-    """A jog may be held on, ended, and begun where nothing else moves the carriage."""
-    if direction == 0 or (state == State.JOGGING and direction > 0) or name == "tracking":
-        return None
-    if name == "fault" and direction > 0:
-        return Reason.OVERTRAVEL
-    return Reason.MODE_OFF if state == State.OFF else busy(state)
-
-
-def command_refusal(name: str, state: State, command: int) -> Reason | None:
-    """Stop is never refused; sets change at rest; indexing needs current and a resting drum."""
-    if command in SET_COMMANDS:
-        return busy(state)
-    if command == Command.CLEAR_FAULT and name == "fault":
-        return Reason.CAUSE_PRESENT
-    if command != Command.INDEX:
-        return None
-    if state == State.OFF:
-        return Reason.MODE_OFF
-    if state in MOVING:
-        return Reason.BUSY_MOVING
-    return Reason.DRUM_MOVING if name.endswith("turning") else None
-
-
-def expected_refusal(name: str, state: State, register: str, value: int) -> Reason | None:
-    """Why a write must be refused here; None if it must be taken."""
-    if register == "jog":
-        return jog_refusal(name, state, value)
-    if register == "command":
-        return command_refusal(name, state, value)
-    if register == "pitch_um":
-        return Reason.BUSY_TRACKING if state == State.TRACKING else None
-    if register == "trim_plus_um":
-        return Reason.BUSY_MOVING if state in MOVING else None
-    return None
-
-
-WRITES = [
-    *(("command", command) for command in Command),
-    *(("mode", mode) for mode in Mode),
-    *(("jog", direction) for direction in (-1, 0, 1)),
-    ("pitch_um", 11_000),
-    ("trim_plus_um", -500),
-]
 
 
 def check_permit(world: World) -> None:
@@ -173,9 +128,9 @@ def check_permit(world: World) -> None:
 
 @pytest.mark.parametrize("name", STATES)
 def test_every_command(name: str):
-    state, make = STATES[name]
+    state = STATES[name][0]
     for register, value in WRITES:
-        world = make()
+        world = MAKE[name]()
         assert world.state == state
         indexed = "indexed" in world.flags
         before = world.read("command_sequence", "steps")
@@ -202,7 +157,7 @@ def test_every_command(name: str):
 @pytest.mark.parametrize("name", STATES)
 def test_stop_and_off_always_end_motion(name: str):
     for write in ({"command": Command.STOP}, {"mode": Mode.OFF}):
-        world = STATES[name][1]()
+        world = MAKE[name]()
         world.write(**write)
         world.run(1.0)  # a ramp takes 1187 edges
         world.run_until(lambda w=world: "moving" not in w.flags, 5.0)
@@ -210,3 +165,9 @@ def test_stop_and_off_always_end_motion(name: str):
         world.run(1.0)
         assert world.value("steps") == steps
         assert not world.permit
+
+
+def test_the_document_is_made_from_these_rules():
+    assert set(MAKE) == set(STATES)
+    assert {state for state, _ in STATES.values()} == set(State)
+    assert DOCUMENT.read_text() == document(), "run python tests/command_rules.py"
