@@ -372,8 +372,9 @@ def _mixed_launch(s: Scenario, rng: random.Random) -> None:
         s.run(rng.randint(0, 2000))
         FAULTS[fault](s, _place(rng))
     s.run(rng.randint(500, 3000))
-    s.drum(rng.choice((1, 1, -1)) * rng.randint(5_000, 48_000), 50_000)
-    s.run(3500)
+    # More than two traverses: time for a LOS to be told and made good.
+    s.drum(rng.choice((1, 1, -1)) * rng.randint(25_000, 48_000), 50_000)
+    s.run(4500)
 
 
 def _grid_launch(s: Scenario, cell: int, rng: random.Random) -> None:
@@ -385,7 +386,7 @@ def _grid_launch(s: Scenario, cell: int, rng: random.Random) -> None:
     FAULTS[fault](s, Place(position_um, direction, rng))
     s.run(3000)
     s.drum(speed, 48_000)
-    s.run(min(12_000, 150_000_000 // abs(speed)))
+    s.run(min(14_000, 200_000_000 // abs(speed)))
 
 
 def scenario(seed: int) -> Scenario:

@@ -51,7 +51,8 @@ MUTANTS = {
         "tracking.c",
         "\tif (error <= tolerance &&",
         "\tif (error <= 100000 || error <= tolerance &&",
-        "slip",
+        "stall",
+        Invariant.SILENT,
         Invariant.RECOVERY,
     ),
     "a LOS is not made good": (
@@ -107,11 +108,11 @@ def build(folder: Path, source: Path, text: str) -> Path:
 
 @pytest.mark.parametrize("name", MUTANTS)
 def test_a_broken_controller_is_caught(name: str, tmp_path: Path):
-    file, right, wrong, fault, invariant = MUTANTS[name]
+    file, right, wrong, fault, *invariants = MUTANTS[name]
     source = ROOT / "lib/lw_core/src" / file
     text = source.read_text()
     assert text.count(right) == 1, f"{file} has changed: adapt the mutant"
     library = build(tmp_path, source, text.replace(right, wrong))
     seeds = islice((seed for seed in count(1) if fault in scenario(seed).faults), MUTANT_LAUNCHES)
     verdicts = (play_seed(seed, library).verdict.broken for seed in seeds)
-    assert next((verdict for verdict in verdicts if verdict is not None), None) == invariant
+    assert next((verdict for verdict in verdicts if verdict is not None), None) in invariants
