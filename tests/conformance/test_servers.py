@@ -19,7 +19,7 @@ from levelwind.conformance.slave import Slave
 from levelwind.conformance.suite import Outcome, Verdict, all_cases, run
 from levelwind.conformance.survey import survey
 from levelwind.device import Line
-from slave import join_terminals
+from slave import NullModem
 
 SERVERS = ("pymodbus", "libmodbus")
 QUICK_S = 0.25
@@ -92,9 +92,9 @@ EXPECTED = {
 
 
 def examine(server: str, timeout_s: float) -> list[Outcome]:
-    server_end, port = join_terminals()
+    line = NullModem()
     process = subprocess.Popen(
-        [sys.executable, str(Path(__file__).with_name("server.py")), server, str(server_end)],
+        [sys.executable, str(Path(__file__).with_name("server.py")), server, str(line.firmware_end)],
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,
@@ -102,11 +102,12 @@ def examine(server: str, timeout_s: float) -> list[Outcome]:
     try:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
-        slave = Slave(SerialLine(Line(str(port))), UNIT, timeout_s)
+        slave = Slave(SerialLine(Line(str(line.port))), UNIT, timeout_s)
         return run(slave, survey(slave, {}, scratch=SCRATCH), all_cases())
     finally:
         process.kill()
         process.wait()
+        line.close()
 
 
 def version(server: str) -> str:

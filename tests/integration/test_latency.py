@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from bench.latency import ANSWER_MAX_MS, of_target
+from latency import ANSWER_MAX_MS, of_target
 
 BLOCKS = 4
 READS = 125  # of a block
