@@ -62,7 +62,7 @@ def main() -> int:
         if len(launches) % 500 == 0:
             print(f"{len(launches)} launches, {time.monotonic() - began:.0f} s", flush=True)
     launches.sort(key=lambda x: x.seed)
-    write(arguments.report, launches, shlex.join(("./dev campaign", *sys.argv[1:])))
+    write(arguments.report, launches, f"./dev campaign {shlex.join(sys.argv[1:])}")
 
     print(f"{'fault':18} {'launches':>9}" + "".join(f"{o:>14}" for o in OUTCOMES))
     for fault, *counts in by_fault(launches):

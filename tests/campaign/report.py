@@ -41,8 +41,8 @@ STATEMENTS = {
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; max-width: 72rem; margin: 2rem auto; padding: 0 1rem }
 table { border-collapse: collapse; margin: 1rem 0 }
-td, th { border: 1px solid #ccc; padding: .25rem .6rem; text-align: right }
-td:first-child, th:first-child { text-align: left }
+td, th { border: 1px solid #ccc; padding: .25rem .6rem; text-align: left }
+td.number { text-align: right }
 th { background: #f0f3f7 } td.bad { background: #f8c9c4; font-weight: bold }
 img { max-width: 100%; border: 1px solid #ddd } code, pre { background: #f4f4f4 }
 pre { padding: .6rem; overflow-x: auto }
@@ -89,10 +89,11 @@ class Launch:
         return "; ".join(parts)
 
 
-def worst(launches: Iterable[Launch]) -> list[tuple[str, Launch]]:
-    """What to look at, with the reason: all that broke an invariant, then the nearest misses."""
+def worst(launches: Iterable[Launch]) -> dict[Launch, list[str]]:
+    """What to look at, with the reasons: what broke an invariant, then the nearest misses."""
     launches = list(launches)
-    chosen = [("broke an invariant", x) for x in launches if x.verdict.broken is not None][:20]
+    failed = [x for x in launches if x.verdict.broken is not None]
+    chosen = {x: ["broke an invariant"] for x in failed[:20]}
     for reason, key in (
         ("longest wrong lay before it was told", lambda v: v.silent_edges),
         ("largest error of the carriage while the permit stood", lambda v: v.error_usteps),
@@ -105,7 +106,9 @@ def worst(launches: Iterable[Launch]) -> list[tuple[str, Launch]]:
         ),
     ):
         ranked = sorted(launches, key=lambda x, key=key: key(x.verdict), reverse=True)
-        chosen += [(reason, x) for x in ranked[:WORST_EACH] if key(x.verdict) > 0]
+        for launch in ranked[:WORST_EACH]:
+            if key(launch.verdict) > 0:
+                chosen.setdefault(launch, []).append(reason)
     return chosen
 
 
@@ -167,8 +170,9 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[object]], bad_column: in
     for row in rows:
         parts.append("<tr>")
         for column, value in enumerate(row):
-            bad = ' class="bad"' if column == bad_column and value else ""
-            parts.append(f"<td{bad}>{html.escape(str(value))}</td>")
+            kind = "number" if isinstance(value, int) else ""
+            kind += " bad" if column == bad_column and value else ""
+            parts.append(f'<td class="{kind}">{html.escape(str(value))}</td>')
         parts.append("</tr>")
     return "".join([*parts, "</table>"])
 
@@ -215,10 +219,10 @@ def write(
         ),
         "<h2>To look at</h2>",
     ]
-    for reason, launch in worst(launches):
+    for launch, reasons in worst(launches).items():
         story = html.escape("\n".join(scenario(launch.seed).story))
         sections.append(
-            f"<h3>{html.escape(reason)}</h3><p>{html.escape(launch.summary())}</p>"
+            f"<h3>{html.escape('; '.join(reasons))}</h3><p>{html.escape(launch.summary())}</p>"
             f"<p><code>./dev campaign --replay {launch.seed}</code></p>"
             f"{_picture(launch, library)}<details><summary>what was done</summary>"
             f"<pre>{story}</pre></details>"
