@@ -221,7 +221,12 @@ def bring_to_rest(slave: Slave) -> None:
     """Drum at rest, no fault injected, factory parameters, position unknown, mode track."""
     slave.write("bench_drum_acceleration_millirpm_per_s", 100_000_000)
     slave.write("bench_drum_speed_millirpm", 0)
-    for name in ("bench_stall", "bench_side_load_mm_per_s2", "bench_direction_reversed"):
+    for name in (
+        "bench_stall",
+        "bench_side_load_mm_per_s2",
+        "bench_direction_reversed",
+        "bench_stepper_alarm",
+    ):
         slave.write(name, 0)
     slave.write("mode", Mode.OFF)
     slave.wait(lambda: slave.read("state") == State.OFF and slave.flag(Flag.DRUM_AT_REST))

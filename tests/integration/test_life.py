@@ -134,3 +134,40 @@ def test_all_setpoints_can_be_written_in_every_cycle(slave: Slave) -> None:
     slave.wait(lambda: cycle() and slave.read("state") == State.TRACKING)
     assert slave.read("reversal_plus_usteps") == 7_950
     assert slave.read("reversal_minus_usteps") == -7_950
+
+
+def test_lost_pulses_are_found_by_the_index_pulse(slave: Slave) -> None:
+    turn_drum(slave, 400_000)
+    pulses = slave.read("encoder_index_pulses")
+    slave.wait(lambda: slave.read("encoder_index_pulses") > pulses + 5)
+    missed = slave.read("missed_edges")
+    slave.write("bench_argument", 3)
+    slave.write("bench_command", BenchCommand.LOSE_PULSES)
+    slave.wait(lambda: slave.read("missed_edges") != missed)
+    assert slave.read("missed_edges") == missed + 3 * 2  # two edges per pulse
+    turn_drum(slave, 0)
+    slave.wait(lambda: slave.flag(Flag.DRUM_AT_REST))
+    assert slave.read("missed_edges") == missed + 3 * 2
+
+
+def test_stepper_alarm_is_a_fault(slave: Slave) -> None:
+    slave.write("bench_stepper_alarm", 1)
+    slave.wait(lambda: slave.read("fault") == Fault.STEPPER_ALARM)
+    assert slave.read("launch_inhibit") & 1 << LaunchInhibit.STEPPER_ALARM
+    assert slave.command(Command.CLEAR_FAULT) == Result.REFUSED
+    slave.write("bench_stepper_alarm", 0)
+    slave.wait(lambda: not slave.read("launch_inhibit") & 1 << LaunchInhibit.STEPPER_ALARM)
+    assert slave.command(Command.CLEAR_FAULT) == Result.DONE
+    index(slave)
+
+
+def test_the_firmware_measures_itself_where_it_can(target: str, slave: Slave) -> None:
+    """The interrupt's time and the stacks, in the emulator as on hardware."""
+    names = [f"stack_free_{name}_bytes" for name in ("supervisor", "limits", "modbus", "storage")]
+    names += ["stack_free_interrupts_bytes", "encoder_interrupt_max_ns"]
+    if target in ("sim", "native_sim"):
+        assert not any(slave.read(name) for name in names)
+        return
+    turn_drum(slave, 400_000)
+    slave.wait(lambda: all(slave.read(name) for name in names))
+    assert min(slave.read(name) for name in names[:-1]) >= 200
