@@ -21,6 +21,7 @@ from levelwind.conformance.survey import survey
 from levelwind.device import Line
 from slave import NullModem
 
+SERVER = Path(__file__).with_name("server.py")
 SERVERS = ("pymodbus", "libmodbus")
 QUICK_S = 0.25
 PATIENT_S = 0.6
@@ -94,7 +95,7 @@ EXPECTED = {
 def examine(server: str, timeout_s: float) -> list[Outcome]:
     line = NullModem()
     process = subprocess.Popen(
-        [sys.executable, str(Path(__file__).with_name("server.py")), server, str(line.firmware_end)],
+        [sys.executable, str(SERVER), server, str(line.firmware_end)],
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
         text=True,

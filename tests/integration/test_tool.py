@@ -225,8 +225,8 @@ def test_watching_without_a_terminal_prints_every_change(
     )
     assert process.stdout is not None
     try:
-        read_until(process.stdout.fileno(), b" SEEKING ")
-        read_until(process.stdout.fileno(), b" SPAN CHECK ")
+        read_until(process.stdout.fileno(), b"Indexing: ")
+        read_until(process.stdout.fileno(), b" TRACKING ")
     finally:
         process.kill()
         process.communicate()
