@@ -39,15 +39,14 @@ struct lw_controller controller;
 const uint32_t law_offset = offsetof(struct lw_controller, motion.law);
 const uint32_t law_size = sizeof(struct lw_law);
 
-int setup(int32_t dwell_millirev, int32_t m, int32_t u);
+int setup(int32_t m, int32_t u);
 int law_forward(struct lw_law *law);
 int law_backward(struct lw_law *law);
 void hardware_interrupt(void);
 void software_interrupt(void);
-int long_way(int dd);
 
 /** The factory pattern, every transition an edge, at a position and slope. @return Ks */
-int setup(int32_t dwell_millirev, int32_t m, int32_t u)
+int setup(int32_t m, int32_t u)
 {
 	const struct lw_inputs inputs = {0};
 	struct lw_refusal why;
@@ -55,7 +54,6 @@ int setup(int32_t dwell_millirev, int32_t m, int32_t u)
 	params = lw_params_default;
 	params.encoder_edges_per_pulse = 4;
 	params.expert_mode = 1;
-	params.dwell_plus_millirev = dwell_millirev;
 	if (lw_params_derive(&params, &derived, &why)) {
 		return 0;
 	}
@@ -64,7 +62,7 @@ int setup(int32_t dwell_millirev, int32_t m, int32_t u)
 			u > 0 ? derived.ks : -derived.ks);
 	lw_motion_set_source(&controller.motion, LW_EDGE_SOURCE_ENCODER);
 	/* What the first edge after a change does. */
-	controller.motion.law.open_span = dwell_millirev ? 0 : controller.motion.law.span;
+	controller.motion.law.open_span = controller.motion.law.span;
 	return derived.ks;
 }
 
@@ -102,12 +100,6 @@ void software_interrupt(void)
 	exti_timer_9.pr = 3;
 	levels = encoder_idr;
 	give(lw_controller_encoder(&controller, levels & 2, levels & 1), &exti_timer_9.pulse_cr1);
-}
-
-/** With something else to do than the law, here a blocked side that the edge does not meet. */
-int long_way(int dd)
-{
-	return lw_motion_long_edge(&controller.motion, dd);
 }
 
 #if __ARM_ARCH == 6

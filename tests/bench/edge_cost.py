@@ -95,7 +95,7 @@ def build(folder: Path, cpu: str, optimization: str) -> Path:
         "dir": DIR,
     }
     roots = ("law_forward", "law_backward", "hardware_interrupt", "software_interrupt")
-    roots += ("long_way", "law_offset", "law_size")
+    roots += ("law_offset", "law_size")
     core = ROOT / "lib/lw_core"
     subprocess.run(
         [
@@ -224,7 +224,7 @@ def measure(machine: Machine, cpu: str, optimization: str) -> list[Cost]:
     kinds = classes(runs, model)
     result = []
     for function in (LAW, HARDWARE, SOFTWARE):
-        assert machine.call("setup", 0, *start) == FACTORY.ks
+        assert machine.call("setup", *start) == FACTORY.ks
         counts = []
         for i, step in enumerate(edges(machine, function, runs)):
             counts.append(machine.count)

@@ -17,7 +17,7 @@
 #define SYSTEM_MAX_INSTRUCTIONS 24
 
 /** What the core may take for a transition; at 48,000 edges/s there are 96,000 in a second. */
-#define CORE_MAX_INSTRUCTIONS 60
+#define CORE_MAX_INSTRUCTIONS 54
 
 #define EDGES 200000
 

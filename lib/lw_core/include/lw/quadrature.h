@@ -53,10 +53,13 @@ LW_EDGE_INLINE int lw_quadrature_update(struct lw_quadrature *quadrature, bool a
 	const int dd = quadrature->counts[before << 2 | now];
 
 	quadrature->levels = (uint8_t)now;
-	if (dd == 0 && (before ^ now) == 3) {
-		quadrature->illegal_transitions++;
-	} else if (before == now) {
-		quadrature->late_interrupts++;
+	if (dd == 0) {
+		/* Nothing of this for an edge. */
+		if ((before ^ now) == 3) {
+			quadrature->illegal_transitions++;
+		} else if (before == now) {
+			quadrature->late_interrupts++;
+		}
 	}
 	return dd;
 }
