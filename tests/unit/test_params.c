@@ -473,15 +473,44 @@ static int32_t random_value(const struct lw_point *point, int32_t value, uint64_
 	}
 }
 
+/** What the proof of the law takes for granted: accepted() in tests/proofs/orbit.h. */
+static void check_proof_applies(const struct lw_law_window *window)
+{
+	const int64_t run = (int64_t)derived.ka * derived.nr * (derived.nr - 1);
+
+	TEST_ASSERT_TRUE(1 <= derived.ka && 1 <= derived.nr);
+	TEST_ASSERT_EQUAL_INT32(derived.ka, window->ka);
+	TEST_ASSERT_EQUAL_INT32(derived.ka * derived.nr, window->ks);
+	TEST_ASSERT_TRUE(window->ks <= 65535);
+	TEST_ASSERT_EQUAL_INT32(0, window->sweep_begin % LW_USTEP);
+	TEST_ASSERT_TRUE(window->sweep_end - window->sweep_begin >= LW_USTEP);
+	TEST_ASSERT_TRUE(2 * (int64_t)window->sweep_end + run <= 2 * 32699LL * LW_USTEP);
+	TEST_ASSERT_TRUE(2 * (int64_t)window->sweep_begin - run >= -2 * 32699LL * LW_USTEP);
+}
+
+/** A trim that is accepted leads to such a window, too. */
+static void check_trimmed(uint64_t *seed)
+{
+	const int32_t trim_plus_um = (int32_t)(next_random(seed) % 4001) - 2000;
+	const int32_t trim_minus_um = (int32_t)(next_random(seed) % 4001) - 2000;
+
+	if (lw_params_check_trim(&params, &derived, trim_plus_um, trim_minus_um, &why) == 0) {
+		const struct lw_law_window window =
+			lw_params_window(&params, &derived, trim_plus_um, trim_minus_um);
+
+		check_proof_applies(&window);
+	}
+}
+
 /** What every accepted set must keep. */
 static void check_accepted(uint64_t *seed)
 {
 	const struct lw_law_window window = lw_params_window(&params, &derived, 0, 0);
 	struct lw_law law;
 
-	TEST_ASSERT_TRUE(1 <= derived.ks && derived.ks <= 65535);
-	TEST_ASSERT_EQUAL_INT32(derived.ks, derived.ka * derived.nr);
-	TEST_ASSERT_TRUE(window.sweep_end - window.sweep_begin >= LW_USTEP);
+	check_proof_applies(&window);
+	check_trimmed(seed);
+	TEST_ASSERT_EQUAL_INT32(derived.ks, window.ks);
 	TEST_ASSERT_EQUAL_INT64((int64_t)derived.ks * (derived.nr - 1) / 2, derived.overshoot_q16);
 
 	const int64_t reach_um =
@@ -555,6 +584,46 @@ static void test_random_sets_within_the_limits_of_their_registers(void)
 	TEST_ASSERT_TRUE_MESSAGE(__builtin_popcountll(reasons) >= 12, "too few reasons met");
 }
 
+/** Sets whose overshoot comes as close to the end of all positions as is accepted. */
+static void test_the_proof_applies_to_the_outermost_sets(void)
+{
+	uint64_t seed = 2020;
+	int accepted = 0;
+
+	for (int round = 0; round < 20000; round++) {
+		const int side = round % 2 ? 1 : -1;
+		const int32_t nr = 1450 + (int32_t)(next_random(&seed) % 800);
+		const int32_t ka = 65535 / nr - (int32_t)(next_random(&seed) % 2);
+		const int32_t overshoot = (int32_t)((int64_t)ka * nr * (nr - 1) / 2 / LW_USTEP);
+		/* A few are refused: they reach up to 3 microsteps too far. */
+		const int32_t outer = 32700 - overshoot - 2 + 3 - (int32_t)(next_random(&seed) % 6);
+		const int32_t inner = outer - 8000;
+
+		setUp();
+		params.expert_mode = 1;
+		params.raw_ka = ka;
+		params.raw_nr = nr;
+		params.raw_reversal_plus_usteps = side > 0 ? outer : -inner;
+		params.raw_reversal_minus_usteps = side > 0 ? inner : -outer;
+		params.flange_plus_um = side > 0 ? 327000 : -200000;
+		params.flange_minus_um = side > 0 ? 200000 : -327000;
+		params.switch_plus_um = 10 * (params.raw_reversal_plus_usteps - 300);
+		params.switch_minus_um = 10 * (params.raw_reversal_minus_usteps + 300);
+		params.centre_position_um = side * 10 * (inner + 4000);
+		params.park_position_um = params.centre_position_um;
+		if (lw_params_derive(&params, &derived, &why) == 0) {
+			const struct lw_law_window window =
+				lw_params_window(&params, &derived, 0, 0);
+
+			check_proof_applies(&window);
+			accepted++;
+		} else {
+			TEST_ASSERT_EQUAL_UINT16(LW_REASON_POSITION_OVERFLOW, why.reason);
+		}
+	}
+	TEST_ASSERT_TRUE(accepted > 5000 && accepted < 15000);
+}
+
 static void test_wholly_random_sets_do_not_overflow(void)
 {
 	uint64_t seed = 4711;
@@ -609,6 +678,7 @@ int main(void)
 	RUN_TEST(test_configurations_of_the_layers_below);
 	RUN_TEST(test_need_index_by_the_flag_of_each_register);
 	RUN_TEST(test_random_sets_within_the_limits_of_their_registers);
+	RUN_TEST(test_the_proof_applies_to_the_outermost_sets);
 	RUN_TEST(test_wholly_random_sets_do_not_overflow);
 	return UNITY_END();
 }

@@ -62,7 +62,7 @@ struct lw_law {
 };
 
 /** Whole microsteps of a Q16.16 position, rounded toward minus infinity. Interrupt safe. */
-static inline int32_t lw_law_pos_usteps(int32_t m)
+LW_EDGE_INLINE int32_t lw_law_pos_usteps(int32_t m)
 {
 	return m >> 16;
 }
@@ -156,7 +156,7 @@ LW_EDGE_INLINE int lw_law_short_edge(struct lw_law *law, uint32_t span, int dd)
 			law->turned = change;
 		}
 		law->rel = rel + (uint32_t)moved;
-		return ((int32_t)(uint16_t)rel + moved) >> 16;
+		return lw_law_pos_usteps((int32_t)(uint16_t)rel + moved);
 	}
 
 	const uint32_t to = rel - (uint32_t)u;
@@ -172,7 +172,7 @@ LW_EDGE_INLINE int lw_law_short_edge(struct lw_law *law, uint32_t span, int dd)
 		law->turned = change;
 	}
 	law->rel = to;
-	return ((int32_t)(uint16_t)rel - u) >> 16;
+	return lw_law_pos_usteps((int32_t)(uint16_t)rel - u);
 }
 
 /** Does this edge count a dwell and nothing else? Then it is taken. For lw_law_edge(). */
