@@ -9,10 +9,15 @@ uint16_t lw_crc16(const uint8_t *bytes, size_t count)
 	};
 	uint16_t crc = 0xFFFF;
 
+	/*@
+	  loop invariant 0 <= i <= count;
+	  loop assigns i, crc;
+	  loop variant count - i;
+	*/
 	for (size_t i = 0; i < count; i++) {
 		crc ^= bytes[i];
-		crc = (uint16_t)((crc >> 4) ^ nibble_crc[crc & 0xF]);
-		crc = (uint16_t)((crc >> 4) ^ nibble_crc[crc & 0xF]);
+		crc = (uint16_t)((crc >> 4) ^ nibble_crc[crc & 0xFu]);
+		crc = (uint16_t)((crc >> 4) ^ nibble_crc[crc & 0xFu]);
 	}
 	return crc;
 }

@@ -17,6 +17,11 @@ uint32_t lw_crc32(const uint8_t *bytes, size_t length)
 					   0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu};
 	uint32_t crc = 0xFFFFFFFFu;
 
+	/*@
+	  loop invariant 0 <= i <= length;
+	  loop assigns i, crc;
+	  loop variant length - i;
+	*/
 	for (size_t i = 0; i < length; i++) {
 		crc ^= bytes[i];
 		crc = table[crc & 0xFu] ^ crc >> 4;
@@ -41,6 +46,11 @@ size_t lw_record_seal(uint8_t *bytes, const char *kind, uint16_t schema, uint32_
 
 static bool erased(const uint8_t *bytes, size_t size)
 {
+	/*@
+	  loop invariant 0 <= i <= size;
+	  loop assigns i;
+	  loop variant size - i;
+	*/
 	for (size_t i = 0; i < size; i++) {
 		if (bytes[i] != bytes[0]) {
 			return false;
