@@ -65,7 +65,7 @@ MUTANTS = (
     Mutant(LAW_H, "(uint16_t)rel - u)", "(uint16_t)rel - u - 1)", EDGE),
     Mutant(LAW_C, "edges < dwell_edges", "edges <= dwell_edges", "lw_law_rests"),
     # The paper's law: the same change of slope in both directions.
-    Mutant(ORBIT_H, ": -region(", ": region(", "orbit_is_kept", "orbit.c"),
+    Mutant(ORBIT_H, ": -region(", ": region(", "orbit_is_kept", "orbit.c", "@assert"),
     Mutant(RECORD_C, "length > size - LW", "length > size + LW", *RECORD),
     Mutant(RECORD_C, "size < LW_RECORD_OVERHEAD", "size < 4", *RECORD),
     Mutant(RTU_C, "count > LW_RTU_FRAME_MAX - rtu->length", "count > LW_RTU_FRAME_MAX", *RECEIVE),
