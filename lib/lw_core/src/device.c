@@ -163,7 +163,7 @@ void lw_device_run_command(struct lw_device *device, enum lw_command command)
 	case LW_COMMAND_FACTORY_ALL:
 		stage_factory(device, command != LW_COMMAND_FACTORY_LINE,
 			      command != LW_COMMAND_FACTORY_MOTION);
-		lw_device_log(device, LW_EVENT_FACTORY_STAGED, command);
+		lw_device_log(device, LW_EVENT_FACTORY_STAGED, (int32_t)command);
 		break;
 	case LW_COMMAND_TRY_LINE:
 		device->command.result = LW_RESULT_IN_PROGRESS;

@@ -17,7 +17,7 @@ int32_t lw_motion_m(const struct lw_motion *motion)
 	/* A new window changes both; the supervisor cannot ask for two while this reads. */
 	const volatile uint32_t *below_from = &motion->law.below_from;
 	const volatile uint32_t *rel = &motion->law.rel;
-	struct lw_law law;
+	struct lw_law law = {0};
 
 	do {
 		law.below_from = *below_from;

@@ -22,7 +22,9 @@
 #include <stdint.h>
 
 /** For what an edge does: the interrupt takes it in even where code is built for size. */
+#ifndef LW_EDGE_INLINE
 #define LW_EDGE_INLINE static inline __attribute__((always_inline))
+#endif
 
 /** One microstep in the Q16.16 format of positions and slopes. */
 #define LW_USTEP 65536
