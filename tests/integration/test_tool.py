@@ -259,6 +259,26 @@ def test_ctrl_c_ends_watching_without_a_traceback(at: str) -> None:
     assert b"Traceback" not in said
 
 
+def test_an_ignored_hangup_stays_ignored(at: str) -> None:
+    ours, theirs = pty.openpty()
+    process = subprocess.Popen(
+        ["sh", "-c", "trap '' HUP; exec \"$@\"", "sh", *LEVELWIND, "status", "--watch"],
+        env=environment(at),
+        stdout=theirs,
+    )
+    os.close(theirs)
+    try:
+        read_until(ours, b"UNINDEXED")
+        process.send_signal(signal.SIGHUP)
+        for _ in range(3):
+            read_until(ours, b"UNINDEXED")
+        assert process.poll() is None
+    finally:
+        process.kill()
+        process.wait()
+        os.close(ours)
+
+
 def test_a_killed_simulator_is_told(own_simulator: Callable[..., Simulator]) -> None:
     running = own_simulator()
     with watching(str(running.port)) as process:
