@@ -19,9 +19,10 @@ static void load(struct lw_world *world)
 	lw_store_init(&world->store);
 	for (unsigned int slot = 0; slot < LW_STORE_SLOTS; slot++) {
 		if (world->config.read_slot != NULL) {
-			lw_store_load(&world->store, slot, bytes,
-				      world->config.read_slot(world->config.context, slot, bytes,
-							      sizeof(bytes)));
+			const size_t length = world->config.read_slot(world->config.context, slot,
+								      bytes, sizeof(bytes));
+
+			lw_store_load(&world->store, slot, bytes, length);
 		} else {
 			lw_store_load(&world->store, slot, world->memory[slot],
 				      sizeof(world->memory[slot]));
