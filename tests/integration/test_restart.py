@@ -91,7 +91,7 @@ def test_power_cuts_while_saving(target: str, tmp_path: Path) -> None:
         pytest.skip("kills the firmware and keeps its flash")
     flash = tmp_path / "flash.bin"
     save = sealed(
-        bytes([UNIT, 6]) + POINTS["command"].address.to_bytes(2) + bytes([0, Command.SAVE])
+        bytes([UNIT, 6]) + POINTS["command"].address.to_bytes(2, "big") + bytes([0, Command.SAVE])
     )
     chance = random.Random(1)
     kept = torn = taken = old = 0
