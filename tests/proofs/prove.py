@@ -156,6 +156,8 @@ def prove(proof: str) -> bool:
     lemmas = functions.get("wp:axiomatics", {}).get("")
     if lemmas:
         rows["lemmas"] = lemmas["wp:section"]
+    goals = functions["wp:global"]["wp:main"]
+    rows["in all"] = {"wp:main": goals}
     complete = True
     for name, section in rows.items():
         proved, total = section["wp:main"].get("valid", 0), section["wp:main"]["total"]
