@@ -24,7 +24,8 @@ MUTANT_TIMEOUT_S = 4
 # C11, 6.3.1.3, which WP does not know; where C leaves it to the compiler, conversions.c tries it.
 AXIOMS = {"uint32_below", "uint32_above", "int32_above", "uint16_of_uint32"}
 BYTES = "lw_record_open,erased,lw_crc32,lw_crc16,"
-BYTES += "lw_rtu_receive,lw_rtu_poll,is_complete,lw_rtu_deadline_us,lw_rtu_seal"
+BYTES += "lw_rtu_receive,lw_rtu_poll,is_complete,lw_rtu_deadline_us,lw_rtu_seal,"
+BYTES += "lw_param_record_decode,is_schema_1,decode_1,decode_2,take,get32_1"
 PROOFS = {
     "orbit.c": (),
     # A shift, which WP has no rules for when negative: conversions.c tries it on every value.
@@ -49,11 +50,15 @@ LAW_H = "lib/lw_core/include/lw/law.h"
 LAW_C = "lib/lw_core/src/law.c"
 RECORD_C = "lib/lw_core/src/record.c"
 RTU_C = "lib/lw_core/src/rtu.c"
+PARAMS_C = "lib/lw_core/src/param_record.c"
 CRC16_C = "lib/lw_core/src/crc16.c"
 ORBIT_H = "tests/proofs/orbit.h"
 EDGE = "lw_law_short_edge"
 RECORD = ("lw_record_open", "bytes.c", "-@ensures")
 RECEIVE = ("lw_rtu_receive", "bytes.c", "-@ensures")
+TAKE = ("take", "bytes.c", "-@ensures")
+DECODE = ("decode_2", "bytes.c", "-@ensures")
+IS_SCHEMA_1 = ("is_schema_1", "bytes.c", "-@ensures")
 CHANGE = "lw_law_slope_change"
 MUTANTS = (
     Mutant(LAW_H, "? law->ka : -law->ka", "? -law->ka : law->ka", CHANGE),
@@ -69,6 +74,9 @@ MUTANTS = (
     Mutant(RECORD_C, "length > size - LW", "length > size + LW", *RECORD),
     Mutant(RECORD_C, "size < LW_RECORD_OVERHEAD", "size < 4", *RECORD),
     Mutant(RTU_C, "count > LW_RTU_FRAME_MAX - rtu->length", "count > LW_RTU_FRAME_MAX", *RECEIVE),
+    Mutant(PARAMS_C, "*next < LW_MAP", "*next <= LW_MAP", *TAKE),
+    Mutant(PARAMS_C, "% ENTRY_SIZE == 0 ?", "% 2 == 0 ?", *DECODE),
+    Mutant(PARAMS_C, "size >= SIZE_1", "size >= SIZE_1 - 4", *IS_SCHEMA_1),
     Mutant(CRC16_C, "i < count", "i <= count", "lw_crc16", "bytes.c", "-@ensures"),
 )
 

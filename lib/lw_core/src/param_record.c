@@ -49,6 +49,11 @@ static int take(struct lw_params *params, size_t *next, uint16_t address, uint32
 	const struct lw_point *point;
 	int32_t limit;
 
+	/*@
+	  loop invariant *next <= LW_MAP_PARAMS_COUNT;
+	  loop assigns *next;
+	  loop variant LW_MAP_PARAMS_COUNT - *next;
+	*/
 	while (*next < LW_MAP_PARAMS_COUNT && lw_map_params[*next].address < address) {
 		(*next)++;
 	}
@@ -71,7 +76,7 @@ static uint32_t get32_1(const uint8_t *at)
 
 static bool is_schema_1(const uint8_t *bytes, size_t size)
 {
-	static const uint8_t head[] = {1, 0, COUNT_1, 0};
+	static const char head[] = {1, 0, COUNT_1, 0};
 
 	return size >= SIZE_1 && memcmp(bytes, kind_1, 4) == 0 &&
 	       memcmp(bytes + 4, head, sizeof(head)) == 0 &&
@@ -83,6 +88,11 @@ static int decode_1(const uint8_t *bytes, struct lw_params *params)
 	size_t next = 0;
 	int ret = 0;
 
+	/*@
+	  loop invariant 0 <= i <= COUNT_1 && next <= LW_MAP_PARAMS_COUNT;
+	  loop assigns i, ret, next, *params;
+	  loop variant COUNT_1 - i;
+	*/
 	for (size_t i = 0; i < COUNT_1 && ret == 0; i++) {
 		ret = take(params, &next, addresses_1[i], get32_1(bytes + 8 + 4 * i));
 	}
@@ -95,6 +105,13 @@ static int decode_2(const struct lw_record *record, struct lw_params *params)
 	size_t next = 0;
 	int ret = record->length % ENTRY_SIZE == 0 ? 0 : -EINVAL;
 
+	/*@
+	  loop invariant 0 <= at && next <= LW_MAP_PARAMS_COUNT;
+	  loop invariant ret == 0 ==> at <= record->length;
+	  loop invariant ret == 0 ==> (record->length - at) % ENTRY_SIZE == 0;
+	  loop assigns at, ret, next, last, *params;
+	  loop variant record->length - at;
+	*/
 	for (size_t at = 0; at < record->length && ret == 0; at += ENTRY_SIZE) {
 		const uint16_t address = lw_get16(record->payload + at);
 
