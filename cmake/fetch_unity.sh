@@ -27,7 +27,8 @@ apt=(apt-get -q
 	-o Dir::State::lists="$work/lists" -o Dir::Cache="$work/cache" -o APT::Sandbox::User=)
 cd "$work"
 "${apt[@]}" update || true # a repository without sources is no reason to stop
-"${apt[@]}" source --download-only cjson
+# The archive's signed index vouches for the tar file; mirrors have been seen without the .dsc.
+"${apt[@]}" source --tar-only --download-only cjson
 
 mkdir unity
 tar -xf cjson_*.orig.tar.* -C unity --strip-components=3 --wildcards \
