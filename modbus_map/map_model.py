@@ -156,6 +156,10 @@ def _point(raw: dict, space: str, enums: dict[str, Enum]) -> Point:
         if "default" not in raw:
             raise MapError(f"{raw['name']}: a writable point needs a default")
         fields["min"], fields["max"] = _limits(raw, enums)
+        if "enum" in raw and not raw.keys() & {"min", "allowed"}:
+            values = sorted(value.value for value in enums[raw["enum"]].values)
+            if values != list(range(values[0], values[-1] + 1)):
+                fields["allowed"] = values  # its numbers have gaps
     elif raw.keys() & {"min", "max", "allowed", "default", "scope", "reindex", "command", "secret"}:
         raise MapError(f"{raw['name']}: cannot be written, so it has no limits, default or scope")
     return Point(**fields)
@@ -256,7 +260,7 @@ def _point_errors(point: Point, map_: Map) -> Iterator[str]:
         yield f"{point.name}: the default {point.default} is not one of {point.allowed}"
     if point.enum:
         values = [value.value for value in map_.enums[point.enum].values]
-        if sorted(values) != list(range(point.min, point.max + 1)):
+        if sorted(values) != (point.allowed or list(range(point.min, point.max + 1))):
             yield (
                 f"{point.name}: the limits {point.min} to {point.max} let values through "
                 f"that the enum {point.enum} does not name"

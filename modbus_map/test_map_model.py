@@ -101,8 +101,8 @@ MISTAKES: list[tuple[str, Callable[[dict], object], str]] = [
         "mode: there is no enum modes",
     ),
     (
-        "enum with a gap",
-        lambda r: r["enums"]["mode"]["values"]["centre"].update(value=3),
+        "limits wider than the enum",
+        lambda r: point(r, "mode").update(min=0, max=3),
         "mode: the limits 0 to 3 let values through",
     ),
     (
@@ -160,3 +160,10 @@ def test_a_state_that_the_picture_does_not_show_is_found() -> None:
     raw["enums"]["state"]["values"]["waiting"] = {"value": 13, "text": "New"}
     with pytest.raises(map_model.MapError, match="differ: waiting"):
         emit_pictures.states_svg(map_model.check(raw))
+
+
+def test_an_enum_with_gaps_lets_no_value_between_through():
+    raw = copy.deepcopy(RAW)
+    raw["enums"]["mode"]["values"]["centre"]["value"] = 5
+    points = [p for b in map_model.check(raw).blocks for p in b.points]
+    assert next(p for p in points if p.name == "mode").allowed == [0, 1, 5]

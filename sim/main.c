@@ -184,7 +184,9 @@ static bool parse_options(int argc, char **argv, struct options *options)
 /** Where a slot stands in the storage file. */
 static off_t slot_offset(unsigned int slot)
 {
-	return (off_t)slot * LW_STORE_SLOT_SIZE;
+	/* In whole pages, so that longer records do not move the others. */
+	_Static_assert(LW_STORE_SLOT_SIZE <= 4096, "a slot does not fit");
+	return (off_t)slot * 4096;
 }
 
 /** Write one slot in place: a power cut may leave it torn, as in a flash. */

@@ -134,14 +134,16 @@ static void tick(struct lw_world *world)
 	}
 }
 
-static void edge(struct lw_world *world, enum lw_edge_source source, int step)
+static void edge(struct lw_world *world, enum lw_edge_source source, int steps)
 {
-	step = lw_controller_driver_step(&world->device.controller, step);
-	if (step != 0) {
-		lw_plant_step(&world->plant, step);
+	const int driver_steps = lw_controller_driver_step(&world->device.controller, steps);
+	const int direction = driver_steps > 0 ? 1 : -1;
+
+	for (int given = 0; given != driver_steps; given += direction) {
+		lw_plant_step(&world->plant, direction);
 	}
 	if (world->config.observe_edge != NULL) {
-		world->config.observe_edge(world->config.context, source, step);
+		world->config.observe_edge(world->config.context, source, driver_steps);
 	}
 }
 

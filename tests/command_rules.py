@@ -20,6 +20,7 @@ SET_COMMANDS = {
     *(Command.APPLY, Command.REVERT, Command.SAVE),
     *(Command.FACTORY_MOTION, Command.FACTORY_LINE, Command.FACTORY_ALL, Command.TRY_LINE),
 }
+CAM_COMMANDS = {Command.CAM_CHECK, Command.CAM_ACTIVATE, Command.CAM_DISCARD}
 
 STATES: dict[str, tuple[State, str]] = {
     "unindexed": (State.UNINDEXED, ""),
@@ -101,10 +102,12 @@ WRITES = [
 def _columns() -> Iterator[tuple[str, str, list[int]]]:
     """Head of a column, and the register and values that it stands for."""
     sets = [command for command in Command if command in SET_COMMANDS]
-    alone = [c for c in Command if c not in SET_COMMANDS and c != Command.NONE]
+    cams = [command for command in Command if command in CAM_COMMANDS]
+    alone = [c for c in Command if c not in SET_COMMANDS | CAM_COMMANDS and c != Command.NONE]
     for command in alone:
         yield command.label, "command", [command]
     yield ", ".join(command.label for command in sets), "command", sets
+    yield ", ".join(command.label for command in cams), "command", cams
     yield "mode", "mode", list(Mode)
     yield "jog +1", "jog", [1]
     yield "jog -1", "jog", [-1]

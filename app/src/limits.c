@@ -20,7 +20,7 @@ K_MSGQ_DEFINE(changes, sizeof(struct change), CHANGES_MAX, 8);
 /* A change found no room. Set by the interrupts, cleared by the thread. */
 static atomic_t changes_lost;
 
-static K_THREAD_STACK_DEFINE(stack, 1024);
+static K_THREAD_STACK_DEFINE(stack, 512);
 static struct k_thread thread;
 
 static const struct device *const switches[] = {

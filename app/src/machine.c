@@ -29,11 +29,15 @@ static const struct device *const overtravels[] = {
 static bool stepper_enabled;
 static uint32_t timer_rate_edges_per_s;
 
-static void step(int direction)
+/** The driver spaces them. Only a cam gives more than one. */
+static void give_steps(int steps)
 {
-	if (direction != 0) {
-		lw_step_dir_step(stepper,
-				 lw_controller_driver_step(&app_device.controller, direction));
+	int left = lw_controller_driver_step(&app_device.controller, steps);
+	const int direction = left > 0 ? 1 : -1;
+
+	while (left != 0) {
+		lw_step_dir_step(stepper, direction);
+		left -= direction;
 	}
 }
 
@@ -68,7 +72,7 @@ static void on_encoder(bool a, bool b, void *user_data)
 	uint32_t taken;
 
 	ARG_UNUSED(user_data);
-	step(lw_controller_encoder(&app_device.controller, a, b));
+	give_steps(lw_controller_encoder(&app_device.controller, a, b));
 	taken = cycles_between(before, cycles_left());
 	if (taken > encoder_interrupt_max_cycles) {
 		encoder_interrupt_max_cycles = taken;
@@ -85,7 +89,7 @@ static void on_edge_timer(const struct device *dev, void *user_data)
 {
 	ARG_UNUSED(dev);
 	ARG_UNUSED(user_data);
-	step(lw_controller_timer_edge(&app_device.controller));
+	give_steps(lw_controller_timer_edge(&app_device.controller));
 }
 
 static void on_overtravel(struct lw_contacts contacts, void *user_data)

@@ -11,13 +11,11 @@
 
 /** Names of the settings, by slot. The first is as old as the firmware. */
 static const char *const names[LW_STORE_SLOTS] = {
-	TREE "/parameters",
-	TREE "/parameters_b",
-	TREE "/journal",
-	TREE "/journal_b",
+	TREE "/parameters", TREE "/parameters_b", TREE "/journal",
+	TREE "/journal_b",  TREE "/cam",          TREE "/cam_b",
 };
 
-static K_THREAD_STACK_DEFINE(stack, 2048);
+static K_THREAD_STACK_DEFINE(stack, 1536);
 static struct k_work_q queue;
 static uint8_t bytes[LW_STORE_SLOT_SIZE]; /**< owned by the work while `writing` */
 static size_t length;                     /**< likewise */

@@ -3,11 +3,15 @@ set(LW_CORE_SOURCES
   generated/map.c
   src/bank.c
   src/cam.c
+  src/cam_banks.c
+  src/cam_motion.c
+  src/cam_tracking.c
   src/cam_table.c
   src/controller.c
   src/crc16.c
   src/device.c
   src/device_bank.c
+  src/device_cam.c
   src/device_events.c
   src/device_line.c
   src/device_status.c

@@ -3,6 +3,7 @@
  * the core's real path, as they would be on an STM32F446. Its registers are plain memory here.
  */
 #include <stddef.h>
+#include <string.h>
 
 #include "lw/controller.h"
 
@@ -35,6 +36,9 @@ static struct lw_params params;
 static struct lw_derived derived;
 struct lw_controller controller;
 
+static struct lw_cam_bank bank;
+struct lw_cam_row cam_rows[LW_CAM_ROWS_MAX]; /**< written by edge_cost.py */
+
 /** For edge_cost.py. */
 const uint32_t law_offset = offsetof(struct lw_controller, motion.law);
 const uint32_t law_size = sizeof(struct lw_law);
@@ -44,6 +48,8 @@ int law_forward(struct lw_law *law);
 int law_backward(struct lw_law *law);
 void hardware_interrupt(void);
 void software_interrupt(void);
+int setup_cam(int interpolation, uint32_t count);
+int cam_edge(int dd);
 
 /** The factory pattern, every transition an edge, at a position and slope. @return Ks */
 int setup(int32_t m, int32_t u)
@@ -100,6 +106,41 @@ void software_interrupt(void)
 	exti_timer_9.pr = 3;
 	levels = encoder_idr;
 	give(lw_controller_encoder(&controller, levels & 2, levels & 1), &exti_timer_9.pulse_cr1);
+}
+
+/** Follow the table in cam_rows from its begin. @return 0, or what is wrong with it */
+int setup_cam(int interpolation, uint32_t count)
+{
+	struct lw_cam_refusal why;
+	struct lw_cam_motion *cam = &controller.motion.cam;
+
+	if (setup(0, 1) == 0) {
+		return -1;
+	}
+	params.cam_start = LW_CAM_START_RELATIVE;
+	params.cam_steps_per_s_max = 4 * params.overspeed_trip_edges_per_s;
+	bank.table.interpolation = (uint16_t)interpolation;
+	bank.table.row_count = (uint16_t)count;
+	memcpy(bank.table.rows, cam_rows, count * sizeof(cam_rows[0]));
+	bank.crc = lw_cam_bank_crc(&bank);
+	if (lw_cam_bank_check(&bank, &params, &bank.statistics, &why)) {
+		return why.reason;
+	}
+
+	const struct lw_cam_scale scale = lw_cam_params_scale(&params);
+
+	lw_cam_start(&cam->cam, &bank.table, &scale, 0, 0);
+	cam->steps_max = LW_CAM_STEPS_PER_EDGE_MAX;
+	cam->edges = controller.motion.edges;
+	cam->on = true;
+	controller.motion.law.open_span = 0;
+	return 0;
+}
+
+/** A drum edge that the cam takes: counted, and the long way. */
+int cam_edge(int dd)
+{
+	return lw_motion_encoder_edge(&controller.motion, dd);
 }
 
 #if __ARM_ARCH == 6

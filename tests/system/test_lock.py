@@ -15,6 +15,9 @@ GUARDED = {
     Command.FACTORY_LINE,
     Command.FACTORY_ALL,
     Command.TRY_LINE,
+    Command.CAM_CHECK,
+    Command.CAM_ACTIVATE,
+    Command.CAM_DISCARD,
 }
 PARAMETERS = [point for point in POINTS.values() if point.block == "parameters"]
 

@@ -114,12 +114,14 @@ static inline void rig_place(int32_t usteps)
 	}
 }
 
-static inline void rig_step(int step)
+static inline void rig_step(int steps)
 {
-	TEST_ASSERT_TRUE(-1 <= step && step <= 1);
-	step = lw_controller_driver_step(rig.controller, step);
-	if (step != 0 && !rig.stalled) {
-		rig_place(rig.carriage_usteps + step);
+	const int most = rig.controller->motion.cam.on ? LW_CAM_STEPS_PER_EDGE_MAX : 1;
+
+	TEST_ASSERT_TRUE(-most <= steps && steps <= most);
+	steps = lw_controller_driver_step(rig.controller, steps);
+	if (steps != 0 && !rig.stalled) {
+		rig_place(rig.carriage_usteps + steps);
 	}
 }
 

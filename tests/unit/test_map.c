@@ -198,7 +198,7 @@ static void test_coils_run_a_command_or_jog(void)
 static void test_discrete_inputs_fit_into_the_register_pair_flags(void)
 {
 	TEST_ASSERT_LESS_OR_EQUAL_UINT(32, LW_MAP_DISCRETES_COUNT);
-	TEST_ASSERT_EQUAL_INT(LW_MAP_DISCRETES_COUNT - 1, LW_FLAG_WATCHDOG_RESET);
+	TEST_ASSERT_EQUAL_INT(LW_MAP_DISCRETES_COUNT - 1, LW_FLAG_CAM_QUEUED);
 	for (uint16_t i = 0; i < LW_MAP_DISCRETES_COUNT; i++) {
 		TEST_ASSERT_EQUAL_UINT16(i, lw_map_discretes[i].address);
 		TEST_ASSERT_EQUAL_UINT16(i, lw_map_discretes[i].offset);
@@ -230,7 +230,7 @@ static void test_points_are_what_the_map_says(void)
 	TEST_ASSERT_EQUAL_INT32(115200, baud_rate->allowed[7]);
 
 	TEST_ASSERT_EQUAL_HEX8(LW_POINT_WRITABLE | LW_POINT_COMMAND, command->flags);
-	TEST_ASSERT_EQUAL_INT32(LW_COMMAND_TRY_LINE, command->max);
+	TEST_ASSERT_EQUAL_INT32(LW_COMMAND_CAM_DISCARD, command->max);
 	TEST_ASSERT_EQUAL_INT32(LW_MODE_CENTRE, mode->max);
 	TEST_ASSERT_EQUAL_INT32(LW_MODE_TRACK, mode->default_value);
 

@@ -547,7 +547,8 @@ static void test_random_sets_within_the_limits_of_their_registers(void)
 {
 	uint64_t seed = 42;
 	int accepted = 0;
-	uint64_t reasons = 0;
+	bool met[LW_REASON_CAM_ADVANCES + 1] = {false};
+	int reasons = 0;
 
 	for (int round = 0; round < 100000; round++) {
 		params = lw_params_default;
@@ -564,7 +565,8 @@ static void test_random_sets_within_the_limits_of_their_registers(void)
 			continue;
 		}
 		TEST_ASSERT_TRUE(why.reason >= LW_REASON_SLOPE_ABOVE_ONE_STEP);
-		reasons |= 1ull << why.reason;
+		reasons += !met[why.reason];
+		met[why.reason] = true;
 
 		/* The register is one of the block, and it is its value. */
 		bool found = false;
@@ -581,7 +583,7 @@ static void test_random_sets_within_the_limits_of_their_registers(void)
 		TEST_ASSERT_TRUE(found);
 	}
 	TEST_ASSERT_TRUE_MESSAGE(accepted > 10000, "the random sets are not worth much");
-	TEST_ASSERT_TRUE_MESSAGE(__builtin_popcountll(reasons) >= 12, "too few reasons met");
+	TEST_ASSERT_TRUE_MESSAGE(reasons >= 12, "too few reasons met");
 }
 
 /** Sets whose overshoot comes as close to the end of all positions as is accepted. */

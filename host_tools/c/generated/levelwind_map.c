@@ -97,6 +97,12 @@ static const struct levelwind_value command_values[] = {
 		10, "try_line",
 		"Use the active line settings now; the old ones again if no valid request comes within line_confirm_s",
 	},
+	{30, "cam_check", "Check the uploaded cam table as a whole, and keep it"},
+	{
+		31, "cam_activate",
+		"Put the checked cam table in force: at once, or at the end of the cycle if a cam is running",
+	},
+	{32, "cam_discard", "Drop the queued cam table, or else the upload"},
 };
 
 static const struct levelwind_value result_values[] = {
@@ -227,6 +233,32 @@ static const struct levelwind_value reason_values[] = {
 		"Last minus first slave of the cam table differs from the declared advance (0 if cyclic)",
 	},
 	{80, "cam_interpolation", "The cam table names an unknown interpolation"},
+	{
+		81, "cam_crc",
+		"The cam table is not the one whose CRC was uploaded with it: upload it again as a whole",
+	},
+	{82, "cam_beyond_flange", "A position of the cam table is beyond a flange (in microsteps)"},
+	{
+		83, "cam_no_table",
+		"There is no checked cam table for this: upload one and give cam_check",
+	},
+	{84, "cam_bank_in_use", "This cam bank is in force or queued: upload into the other one"},
+	{
+		85, "cam_queued",
+		"A cam table is queued: wait for the end of the cycle, or give cam_discard",
+	},
+	{
+		86, "cam_does_not_join",
+		"The new cam table must begin at the slave position where the one in force begins (cam_start other than relative)",
+	},
+	{
+		87, "cam_free_axis",
+		"A free axis has no position to begin at: cam_start must be relative",
+	},
+	{
+		88, "cam_advances",
+		"A cam table that advances leaves the flanges behind: it needs cam_axis free",
+	},
 };
 
 static const struct levelwind_value host_values[] = {
@@ -272,6 +304,44 @@ static const struct levelwind_value slot_state_values[] = {
 	},
 	{4, "damaged", "Cut short or changed: not used"},
 	{5, "refused", "An intact parameter set that this firmware does not accept: not used"},
+};
+
+static const struct levelwind_value motion_profile_values[] = {
+	{0, "screw", "The reversing screw: level winding"},
+	{1, "cam", "The active cam table"},
+};
+
+static const struct levelwind_value cam_start_values[] = {
+	{
+		0, "absolute",
+		"The carriage goes to the slave position of the odometer's place in the cycle, then follows",
+	},
+	{1, "relative", "The cycle begins here and now, the slave position where the carriage is"},
+	{
+		2, "next_cycle",
+		"The carriage goes to the table's first slave position and follows from the odometer's next begin of a cycle",
+	},
+};
+
+static const struct levelwind_value cam_axis_values[] = {
+	{0, "carriage", "The carriage, between the flanges"},
+	{
+		1, "free",
+		"An axis without ends; a table may advance. Its position is 0 wherever it is left",
+	},
+};
+
+static const struct levelwind_value cam_bank_state_values[] = {
+	{0, "empty", "Nothing"},
+	{1, "loading", "Parts of an upload; give cam_check when it is complete"},
+	{2, "ready", "A checked table that is not in force"},
+	{3, "queued", "A checked table that waits for the end of the cycle"},
+	{4, "active", "The table in force"},
+};
+
+static const struct levelwind_value cam_interpolation_values[] = {
+	{0, "linear", "Straight, at one gear ratio"},
+	{1, "trapezoid", "At rest in every row: ramp up, plateau, ramp down"},
 };
 
 static const struct levelwind_value flag_values[] = {
@@ -330,6 +400,7 @@ static const struct levelwind_value flag_values[] = {
 		30, "watchdog_reset",
 		"The last restart was made by the watchdog: a part of the firmware had stopped",
 	},
+	{31, "cam_queued", "A cam table waits for the end of the cycle"},
 };
 
 static const struct levelwind_value launch_inhibit_values[] = {
@@ -342,8 +413,10 @@ static const struct levelwind_value launch_inhibit_values[] = {
 	{6, "master_lost", "The Modbus master is silent"},
 	{7, "correction", "A re-index correction is pending"},
 	{8, "stepper_alarm", "The stepper driver reports an alarm"},
+	{9, "cam", "The motion profile is cam and its table cannot be followed; see cam_reason"},
 };
 
+static const int32_t allowed_command[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 30, 31, 32};
 static const int32_t allowed_encoder_edges_per_pulse[] = {1, 2, 4};
 static const int32_t allowed_baud_rate[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 
@@ -352,8 +425,8 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command", .unit = "",
 		.text = "Writing a code runs the command; reads the last one",
 		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_U16, .address = 0,
-		.words = 1, .min = 0, .max = 10, .default_value = 0, .values = command_values,
-		.value_count = 11,
+		.words = 1, .min = 0, .max = 32, .default_value = 0, .allowed = allowed_command,
+		.allowed_count = 14, .values = command_values, .value_count = 14,
 	},
 	{
 		.name = "mode", .unit = "",
@@ -385,6 +458,12 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Writing lock_code opens the write lock for lock_timeout_s, writing 0 closes it; reads 0",
 		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_U32, .address = 10,
 		.words = 2, .min = 0, .max = 999999, .default_value = 0,
+	},
+	{
+		.name = "cam_phase_edges", .unit = "edges",
+		.text = "Live shift of the cam's master, one edge per edge until it is reached",
+		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_I32, .address = 630,
+		.words = 2, .min = -100000000, .max = 100000000, .default_value = 0,
 	},
 	{
 		.name = "encoder_pulses_per_rev", .unit = "pulses",
@@ -710,6 +789,59 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 1, .min = 2, .max = 120, .default_value = 10,
 	},
 	{
+		.name = "motion_profile", .unit = "",
+		.text = "What the carriage follows the drum by",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 600,
+		.words = 1, .min = 0, .max = 1, .default_value = 0, .values = motion_profile_values,
+		.value_count = 2,
+	},
+	{
+		.name = "cam_start", .unit = "", .text = "How a cam begins at a hand-over",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 601,
+		.words = 1, .min = 0, .max = 2, .default_value = 0, .values = cam_start_values,
+		.value_count = 3,
+	},
+	{
+		.name = "cam_master_edges", .unit = "edges",
+		.text = "So many encoder edges are cam_master_units of a cam table's master column",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 602,
+		.words = 1, .min = 1, .max = 10000, .default_value = 1,
+	},
+	{
+		.name = "cam_master_units", .unit = "", .text = "See cam_master_edges",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 603,
+		.words = 1, .min = 1, .max = 10000, .default_value = 1,
+	},
+	{
+		.name = "cam_slave_usteps", .unit = "usteps",
+		.text = "So many microsteps are cam_slave_units of a cam table's slave column",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 604,
+		.words = 1, .min = 1, .max = 10000, .default_value = 1,
+	},
+	{
+		.name = "cam_slave_units", .unit = "", .text = "See cam_slave_usteps",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 605,
+		.words = 1, .min = 1, .max = 10000, .default_value = 1,
+	},
+	{
+		.name = "cam_ramp_divisor", .unit = "",
+		.text = "Trapezoid rows: each ramp is this part of its row",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 606,
+		.words = 1, .min = 2, .max = 100, .default_value = 10,
+	},
+	{
+		.name = "cam_axis", .unit = "", .text = "What a cam moves",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 607,
+		.words = 1, .min = 0, .max = 1, .default_value = 0, .values = cam_axis_values,
+		.value_count = 2,
+	},
+	{
+		.name = "cam_steps_per_s_max", .unit = "usteps/s",
+		.text = "Fastest step pulses that the stepper driver and the motor follow; a cam table may ask for no more at overspeed_trip_edges_per_s",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 608,
+		.words = 2, .min = 1000, .max = 4000000, .default_value = 200000,
+	},
+	{
 		.name = "self_test", .unit = "",
 		.text = "Always 0x12345678: the master's word order is right when it reads so",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 0,
@@ -765,14 +897,14 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "All discrete inputs in one pair, bit number = discrete input address",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 103,
 		.words = 2, .offset = offsetof(struct levelwind_status, flags),
-		.values = flag_values, .value_count = 31,
+		.values = flag_values, .value_count = 32,
 	},
 	{
 		.name = "launch_inhibit", .unit = "",
 		.text = "Why a launch is not permitted; 0 means launch permit",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 105,
 		.words = 1, .offset = offsetof(struct levelwind_status, launch_inhibit),
-		.values = launch_inhibit_values, .value_count = 9,
+		.values = launch_inhibit_values, .value_count = 10,
 	},
 	{
 		.name = "position_um", .unit = "um", .text = "Carriage position",
@@ -1089,7 +1221,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_code", .unit = "", .text = "The last command",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 401,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_code),
-		.values = command_values, .value_count = 11,
+		.values = command_values, .value_count = 14,
 	},
 	{
 		.name = "command_result", .unit = "", .text = "How it ended",
@@ -1101,7 +1233,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_reason", .unit = "", .text = "Why it was refused or failed",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 403,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_reason),
-		.values = reason_values, .value_count = 59,
+		.values = reason_values, .value_count = 67,
 	},
 	{
 		.name = "command_address", .unit = "",
@@ -1124,7 +1256,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Why the last refused request was refused", .block = LEVELWIND_BLOCK_STATUS,
 		.type = LEVELWIND_TYPE_U16, .address = 410, .words = 1,
 		.offset = offsetof(struct levelwind_status, last_error_reason),
-		.values = reason_values, .value_count = 59,
+		.values = reason_values, .value_count = 67,
 	},
 	{
 		.name = "last_error_function", .unit = "", .text = "Its function code",
@@ -1213,5 +1345,154 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "dwell_minus_edges", .unit = "edges", .text = "Dwell at the minus side",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 518,
 		.words = 2, .offset = offsetof(struct levelwind_status, dwell_minus_edges),
+	},
+	{
+		.name = "cam_bank_0_state", .unit = "",
+		.text = "What the first bank of cam tables holds", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_U16, .address = 600, .words = 1,
+		.offset = offsetof(struct levelwind_status, cam_bank_0_state),
+		.values = cam_bank_state_values, .value_count = 5,
+	},
+	{
+		.name = "cam_bank_1_state", .unit = "",
+		.text = "What the second bank of cam tables holds", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_U16, .address = 601, .words = 1,
+		.offset = offsetof(struct levelwind_status, cam_bank_1_state),
+		.values = cam_bank_state_values, .value_count = 5,
+	},
+	{
+		.name = "cam_reason", .unit = "",
+		.text = "Why the last check of a cam table refused it, or why the active one cannot be followed",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 602,
+		.words = 1, .offset = offsetof(struct levelwind_status, cam_reason),
+		.values = reason_values, .value_count = 67,
+	},
+	{
+		.name = "cam_reason_row", .unit = "",
+		.text = "The offending row, counted from 1; 0 if no single row is to blame",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 603,
+		.words = 1, .offset = offsetof(struct levelwind_status, cam_reason_row),
+	},
+	{
+		.name = "cam_reason_value", .unit = "", .text = "The offending value",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 604,
+		.words = 2, .offset = offsetof(struct levelwind_status, cam_reason_value),
+	},
+	{
+		.name = "cam_reason_limit", .unit = "", .text = "The limit that it broke",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 606,
+		.words = 2, .offset = offsetof(struct levelwind_status, cam_reason_limit),
+	},
+	{
+		.name = "cam_version", .unit = "", .text = "Version of the active cam table",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 608,
+		.words = 2, .offset = offsetof(struct levelwind_status, cam_version),
+	},
+	{
+		.name = "cam_stored", .unit = "",
+		.text = "1 when it is stored, so that the next power-up begins with it; written at rest only",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 610,
+		.words = 1, .offset = offsetof(struct levelwind_status, cam_stored),
+	},
+	{
+		.name = "cam_rows", .unit = "", .text = "Its rows; 0: there is none",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 611,
+		.words = 1, .offset = offsetof(struct levelwind_status, cam_rows),
+	},
+	{
+		.name = "cam_cycle_edges", .unit = "edges", .text = "Length of its cycle",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 612,
+		.words = 2, .offset = offsetof(struct levelwind_status, cam_cycle_edges),
+	},
+	{
+		.name = "cam_min_usteps", .unit = "usteps", .text = "Its lowest position",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 614,
+		.words = 2, .offset = offsetof(struct levelwind_status, cam_min_usteps),
+	},
+	{
+		.name = "cam_max_usteps", .unit = "usteps", .text = "Its highest position",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 616,
+		.words = 2, .offset = offsetof(struct levelwind_status, cam_max_usteps),
+	},
+	{
+		.name = "cam_slope_max_permille", .unit = "usteps/1000 edges",
+		.text = "Its steepest slope, ramps included", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_U16, .address = 618, .words = 1,
+		.offset = offsetof(struct levelwind_status, cam_slope_max_permille),
+	},
+	{
+		.name = "cam_position_usteps", .unit = "usteps",
+		.text = "Slave position by the table, modulo 2^32", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I32, .address = 619, .words = 2,
+		.offset = offsetof(struct levelwind_status, cam_position_usteps),
+	},
+	{
+		.name = "cam_row", .unit = "",
+		.text = "Row behind the master, counted from 1; 0: no cam is running",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 621,
+		.words = 1, .offset = offsetof(struct levelwind_status, cam_row),
+	},
+	{
+		.name = "cam_cycles", .unit = "", .text = "Net cycles since the hand-over",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 622,
+		.words = 2, .offset = offsetof(struct levelwind_status, cam_cycles),
+	},
+	{
+		.name = "cam_phase_in_force_edges", .unit = "edges",
+		.text = "How much of cam_phase_edges is reached", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_I32, .address = 624, .words = 2,
+		.offset = offsetof(struct levelwind_status, cam_phase_in_force_edges),
+	},
+	{
+		.name = "cam_waiting", .unit = "",
+		.text = "1 while a cam waits for the begin of the next cycle",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 626,
+		.words = 1, .offset = offsetof(struct levelwind_status, cam_waiting),
+	},
+	{
+		.name = "cam_upload_name", .unit = "",
+		.text = "Name, two characters of ASCII in a register",
+		.block = LEVELWIND_BLOCK_CAM_UPLOAD, .type = LEVELWIND_TYPE_U16, .address = 3000,
+		.words = 1, .min = 0, .max = 65535, .default_value = 0,
+	},
+	{
+		.name = "cam_upload_version", .unit = "", .text = "Version, for people",
+		.block = LEVELWIND_BLOCK_CAM_UPLOAD, .type = LEVELWIND_TYPE_U32, .address = 3008,
+		.words = 2, .min = 0, .max = 2147483647, .default_value = 0,
+	},
+	{
+		.name = "cam_upload_interpolation", .unit = "", .text = "How to go from row to row",
+		.block = LEVELWIND_BLOCK_CAM_UPLOAD, .type = LEVELWIND_TYPE_U16, .address = 3010,
+		.words = 1, .min = 0, .max = 1, .default_value = 0,
+		.values = cam_interpolation_values, .value_count = 2,
+	},
+	{
+		.name = "cam_upload_row_count", .unit = "", .text = "Rows",
+		.block = LEVELWIND_BLOCK_CAM_UPLOAD, .type = LEVELWIND_TYPE_U16, .address = 3011,
+		.words = 1, .min = 0, .max = 65535, .default_value = 0,
+	},
+	{
+		.name = "cam_upload_advance", .unit = "",
+		.text = "Slave units that a cycle adds; 0: cyclic",
+		.block = LEVELWIND_BLOCK_CAM_UPLOAD, .type = LEVELWIND_TYPE_I32, .address = 3012,
+		.words = 2, .min = -2147483647, .max = 2147483647, .default_value = 0,
+	},
+	{
+		.name = "cam_upload_crc", .unit = "",
+		.text = "CRC-32 of the 14 registers before and 4 per row, high word first",
+		.block = LEVELWIND_BLOCK_CAM_UPLOAD, .type = LEVELWIND_TYPE_U16, .address = 3014,
+		.words = 1, .min = 0, .max = 65535, .default_value = 0,
+	},
+	{
+		.name = "cam_upload_first_row", .unit = "",
+		.text = "Row that cam_upload_rows begins at, counted from 1; may stand in the same request",
+		.block = LEVELWIND_BLOCK_CAM_UPLOAD, .type = LEVELWIND_TYPE_U16, .address = 3016,
+		.words = 1, .min = 1, .max = 256, .default_value = 1,
+	},
+	{
+		.name = "cam_upload_rows", .unit = "",
+		.text = "Window of 30 rows: master, slave, alternating",
+		.block = LEVELWIND_BLOCK_CAM_UPLOAD, .type = LEVELWIND_TYPE_I32, .address = 3018,
+		.words = 2, .min = -2147483647, .max = 2147483647, .default_value = 0,
 	},
 };

@@ -133,6 +133,15 @@ enum levelwind_command {
 	 * line_confirm_s
 	 */
 	LEVELWIND_COMMAND_TRY_LINE = 10,
+	/** Check the uploaded cam table as a whole, and keep it */
+	LEVELWIND_COMMAND_CAM_CHECK = 30,
+	/**
+	 * Put the checked cam table in force: at once, or at the end of the cycle if a cam is
+	 * running
+	 */
+	LEVELWIND_COMMAND_CAM_ACTIVATE = 31,
+	/** Drop the queued cam table, or else the upload */
+	LEVELWIND_COMMAND_CAM_DISCARD = 32,
 };
 
 /** How the last command ended */
@@ -300,6 +309,27 @@ enum levelwind_reason {
 	LEVELWIND_REASON_CAM_WRAP = 79,
 	/** The cam table names an unknown interpolation */
 	LEVELWIND_REASON_CAM_INTERPOLATION = 80,
+	/**
+	 * The cam table is not the one whose CRC was uploaded with it: upload it again as a whole
+	 */
+	LEVELWIND_REASON_CAM_CRC = 81,
+	/** A position of the cam table is beyond a flange (in microsteps) */
+	LEVELWIND_REASON_CAM_BEYOND_FLANGE = 82,
+	/** There is no checked cam table for this: upload one and give cam_check */
+	LEVELWIND_REASON_CAM_NO_TABLE = 83,
+	/** This cam bank is in force or queued: upload into the other one */
+	LEVELWIND_REASON_CAM_BANK_IN_USE = 84,
+	/** A cam table is queued: wait for the end of the cycle, or give cam_discard */
+	LEVELWIND_REASON_CAM_QUEUED = 85,
+	/**
+	 * The new cam table must begin at the slave position where the one in force begins
+	 * (cam_start other than relative)
+	 */
+	LEVELWIND_REASON_CAM_DOES_NOT_JOIN = 86,
+	/** A free axis has no position to begin at: cam_start must be relative */
+	LEVELWIND_REASON_CAM_FREE_AXIS = 87,
+	/** A cam table that advances leaves the flanges behind: it needs cam_axis free */
+	LEVELWIND_REASON_CAM_ADVANCES = 88,
 };
 
 /** What runs the core */
@@ -371,6 +401,60 @@ enum levelwind_slot_state {
 	LEVELWIND_SLOT_STATE_REFUSED = 5,
 };
 
+/** What the carriage follows the drum by */
+enum levelwind_motion_profile {
+	/** The reversing screw: level winding */
+	LEVELWIND_MOTION_PROFILE_SCREW = 0,
+	/** The active cam table */
+	LEVELWIND_MOTION_PROFILE_CAM = 1,
+};
+
+/** How a cam begins at a hand-over */
+enum levelwind_cam_start {
+	/**
+	 * The carriage goes to the slave position of the odometer's place in the cycle, then
+	 * follows
+	 */
+	LEVELWIND_CAM_START_ABSOLUTE = 0,
+	/** The cycle begins here and now, the slave position where the carriage is */
+	LEVELWIND_CAM_START_RELATIVE = 1,
+	/**
+	 * The carriage goes to the table's first slave position and follows from the odometer's
+	 * next begin of a cycle
+	 */
+	LEVELWIND_CAM_START_NEXT_CYCLE = 2,
+};
+
+/** What a cam moves */
+enum levelwind_cam_axis {
+	/** The carriage, between the flanges */
+	LEVELWIND_CAM_AXIS_CARRIAGE = 0,
+	/** An axis without ends; a table may advance. Its position is 0 wherever it is left */
+	LEVELWIND_CAM_AXIS_FREE = 1,
+};
+
+/** What a bank of cam tables holds */
+enum levelwind_cam_bank_state {
+	/** Nothing */
+	LEVELWIND_CAM_BANK_STATE_EMPTY = 0,
+	/** Parts of an upload; give cam_check when it is complete */
+	LEVELWIND_CAM_BANK_STATE_LOADING = 1,
+	/** A checked table that is not in force */
+	LEVELWIND_CAM_BANK_STATE_READY = 2,
+	/** A checked table that waits for the end of the cycle */
+	LEVELWIND_CAM_BANK_STATE_QUEUED = 3,
+	/** The table in force */
+	LEVELWIND_CAM_BANK_STATE_ACTIVE = 4,
+};
+
+/** How a cam table goes from row to row */
+enum levelwind_cam_interpolation {
+	/** Straight, at one gear ratio */
+	LEVELWIND_CAM_INTERPOLATION_LINEAR = 0,
+	/** At rest in every row: ramp up, plateau, ramp down */
+	LEVELWIND_CAM_INTERPOLATION_TRAPEZOID = 1,
+};
+
 /** Discrete inputs, and bit numbers of levelwind_status.flags */
 enum levelwind_flag {
 	/** The position is known */
@@ -435,6 +519,8 @@ enum levelwind_flag {
 	LEVELWIND_FLAG_LINE_TRIAL = 29,
 	/** The last restart was made by the watchdog: a part of the firmware had stopped */
 	LEVELWIND_FLAG_WATCHDOG_RESET = 30,
+	/** A cam table waits for the end of the cycle */
+	LEVELWIND_FLAG_CAM_QUEUED = 31,
 };
 
 /** Bit numbers of levelwind_status.launch_inhibit */
@@ -457,6 +543,8 @@ enum levelwind_launch_inhibit_bit {
 	LEVELWIND_LAUNCH_INHIBIT_CORRECTION = 7,
 	/** The stepper driver reports an alarm */
 	LEVELWIND_LAUNCH_INHIBIT_STEPPER_ALARM = 8,
+	/** The motion profile is cam and its table cannot be followed; see cam_reason */
+	LEVELWIND_LAUNCH_INHIBIT_CAM = 9,
 };
 
 /** Where a point belongs */
@@ -467,6 +555,11 @@ enum levelwind_block {
 	LEVELWIND_BLOCK_PARAMETERS = 1,
 	/** Identity, live status, LOS records, counters, command results and derived values */
 	LEVELWIND_BLOCK_STATUS = 2,
+	/**
+	 * The cam bank that is not in force, to write and to read. The same as the file record
+	 * interface
+	 */
+	LEVELWIND_BLOCK_CAM_UPLOAD = 3,
 };
 
 /* Protocol addresses of holding and input registers. */
@@ -476,6 +569,7 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_TRIM_PLUS_UM                  3
 #define LEVELWIND_ADDRESS_TRIM_MINUS_UM                 4
 #define LEVELWIND_ADDRESS_UNLOCK                        10
+#define LEVELWIND_ADDRESS_CAM_PHASE_EDGES               630
 #define LEVELWIND_ADDRESS_ENCODER_PULSES_PER_REV        100
 #define LEVELWIND_ADDRESS_ENCODER_EDGES_PER_PULSE       101
 #define LEVELWIND_ADDRESS_ENCODER_RATIO_NUMERATOR       102
@@ -530,6 +624,15 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_LOCK_CODE                     184
 #define LEVELWIND_ADDRESS_LOCK_TIMEOUT_S                186
 #define LEVELWIND_ADDRESS_LINE_CONFIRM_S                187
+#define LEVELWIND_ADDRESS_MOTION_PROFILE                600
+#define LEVELWIND_ADDRESS_CAM_START                     601
+#define LEVELWIND_ADDRESS_CAM_MASTER_EDGES              602
+#define LEVELWIND_ADDRESS_CAM_MASTER_UNITS              603
+#define LEVELWIND_ADDRESS_CAM_SLAVE_USTEPS              604
+#define LEVELWIND_ADDRESS_CAM_SLAVE_UNITS               605
+#define LEVELWIND_ADDRESS_CAM_RAMP_DIVISOR              606
+#define LEVELWIND_ADDRESS_CAM_AXIS                      607
+#define LEVELWIND_ADDRESS_CAM_STEPS_PER_S_MAX           608
 #define LEVELWIND_ADDRESS_SELF_TEST                     0
 #define LEVELWIND_ADDRESS_MAP_VERSION                   2
 #define LEVELWIND_ADDRESS_VERSION_MAJOR                 3
@@ -618,6 +721,32 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_EDGES_PER_1000_DRUM_REVS      514
 #define LEVELWIND_ADDRESS_DWELL_PLUS_EDGES              516
 #define LEVELWIND_ADDRESS_DWELL_MINUS_EDGES             518
+#define LEVELWIND_ADDRESS_CAM_BANK_0_STATE              600
+#define LEVELWIND_ADDRESS_CAM_BANK_1_STATE              601
+#define LEVELWIND_ADDRESS_CAM_REASON                    602
+#define LEVELWIND_ADDRESS_CAM_REASON_ROW                603
+#define LEVELWIND_ADDRESS_CAM_REASON_VALUE              604
+#define LEVELWIND_ADDRESS_CAM_REASON_LIMIT              606
+#define LEVELWIND_ADDRESS_CAM_VERSION                   608
+#define LEVELWIND_ADDRESS_CAM_STORED                    610
+#define LEVELWIND_ADDRESS_CAM_ROWS                      611
+#define LEVELWIND_ADDRESS_CAM_CYCLE_EDGES               612
+#define LEVELWIND_ADDRESS_CAM_MIN_USTEPS                614
+#define LEVELWIND_ADDRESS_CAM_MAX_USTEPS                616
+#define LEVELWIND_ADDRESS_CAM_SLOPE_MAX_PERMILLE        618
+#define LEVELWIND_ADDRESS_CAM_POSITION_USTEPS           619
+#define LEVELWIND_ADDRESS_CAM_ROW                       621
+#define LEVELWIND_ADDRESS_CAM_CYCLES                    622
+#define LEVELWIND_ADDRESS_CAM_PHASE_IN_FORCE_EDGES      624
+#define LEVELWIND_ADDRESS_CAM_WAITING                   626
+#define LEVELWIND_ADDRESS_CAM_UPLOAD_NAME               3000
+#define LEVELWIND_ADDRESS_CAM_UPLOAD_VERSION            3008
+#define LEVELWIND_ADDRESS_CAM_UPLOAD_INTERPOLATION      3010
+#define LEVELWIND_ADDRESS_CAM_UPLOAD_ROW_COUNT          3011
+#define LEVELWIND_ADDRESS_CAM_UPLOAD_ADVANCE            3012
+#define LEVELWIND_ADDRESS_CAM_UPLOAD_CRC                3014
+#define LEVELWIND_ADDRESS_CAM_UPLOAD_FIRST_ROW          3016
+#define LEVELWIND_ADDRESS_CAM_UPLOAD_ROWS               3018
 
 /* Added to the address of a parameter: its read-only copies, input registers. */
 #define LEVELWIND_ACTIVE_ADDRESS_OFFSET 1000
@@ -815,6 +944,45 @@ struct levelwind_status {
 	uint32_t dwell_plus_edges;
 	/** Dwell at the minus side [edges] */
 	uint32_t dwell_minus_edges;
+	/** What the first bank of cam tables holds (enum levelwind_cam_bank_state) */
+	int32_t cam_bank_0_state;
+	/** What the second bank of cam tables holds (enum levelwind_cam_bank_state) */
+	int32_t cam_bank_1_state;
+	/**
+	 * Why the last check of a cam table refused it, or why the active one cannot be followed
+	 * (enum levelwind_reason)
+	 */
+	int32_t cam_reason;
+	/** The offending row, counted from 1; 0 if no single row is to blame */
+	int32_t cam_reason_row;
+	/** The offending value */
+	int32_t cam_reason_value;
+	/** The limit that it broke */
+	int32_t cam_reason_limit;
+	/** Version of the active cam table */
+	uint32_t cam_version;
+	/** 1 when it is stored, so that the next power-up begins with it; written at rest only */
+	int32_t cam_stored;
+	/** Its rows; 0: there is none */
+	int32_t cam_rows;
+	/** Length of its cycle [edges] */
+	uint32_t cam_cycle_edges;
+	/** Its lowest position [usteps] */
+	int32_t cam_min_usteps;
+	/** Its highest position [usteps] */
+	int32_t cam_max_usteps;
+	/** Its steepest slope, ramps included [usteps/1000 edges] */
+	int32_t cam_slope_max_permille;
+	/** Slave position by the table, modulo 2^32 [usteps] */
+	int32_t cam_position_usteps;
+	/** Row behind the master, counted from 1; 0: no cam is running */
+	int32_t cam_row;
+	/** Net cycles since the hand-over */
+	int32_t cam_cycles;
+	/** How much of cam_phase_edges is reached [edges] */
+	int32_t cam_phase_in_force_edges;
+	/** 1 while a cam waits for the begin of the next cycle */
+	int32_t cam_waiting;
 };
 
 /** One value of an enumeration, or one bit number of a bit field */
@@ -852,7 +1020,7 @@ struct levelwind_point {
 	size_t value_count;
 };
 
-#define LEVELWIND_POINT_COUNT 148
+#define LEVELWIND_POINT_COUNT 184
 
 /** All points, by block and rising address */
 extern const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT];

@@ -7,11 +7,12 @@
 
 #include <stddef.h>
 
+static const int32_t allowed_command[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 30, 31, 32};
 const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT] = {
 	{
 		.address = 0, .count = 1, .offset = offsetof(struct lw_setpoints, command),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .min = 0,
-		.max = 10, .default_value = 0,
+		.max = 32, .default_value = 0, .allowed = allowed_command, .allowed_count = 14,
 	},
 	{
 		.address = 1, .count = 1, .offset = offsetof(struct lw_setpoints, mode),
@@ -37,6 +38,11 @@ const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT] = {
 		.address = 10, .count = 1, .offset = offsetof(struct lw_setpoints, unlock),
 		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE, .min = 0, .max = 999999,
 		.default_value = 0,
+	},
+	{
+		.address = 630, .count = 1,
+		.offset = offsetof(struct lw_setpoints, cam_phase_edges), .type = LW_TYPE_I32,
+		.flags = LW_POINT_WRITABLE, .min = -100000000, .max = 100000000, .default_value = 0,
 	},
 };
 
@@ -331,6 +337,51 @@ const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT] = {
 		.address = 187, .count = 1, .offset = offsetof(struct lw_params, line_confirm_s),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_SCOPE_LINE, .min = 2,
 		.max = 120, .default_value = 10,
+	},
+	{
+		.address = 600, .count = 1, .offset = offsetof(struct lw_params, motion_profile),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1,
+		.default_value = 0,
+	},
+	{
+		.address = 601, .count = 1, .offset = offsetof(struct lw_params, cam_start),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 2,
+		.default_value = 0,
+	},
+	{
+		.address = 602, .count = 1, .offset = offsetof(struct lw_params, cam_master_edges),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 1, .max = 10000,
+		.default_value = 1,
+	},
+	{
+		.address = 603, .count = 1, .offset = offsetof(struct lw_params, cam_master_units),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 1, .max = 10000,
+		.default_value = 1,
+	},
+	{
+		.address = 604, .count = 1, .offset = offsetof(struct lw_params, cam_slave_usteps),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 1, .max = 10000,
+		.default_value = 1,
+	},
+	{
+		.address = 605, .count = 1, .offset = offsetof(struct lw_params, cam_slave_units),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 1, .max = 10000,
+		.default_value = 1,
+	},
+	{
+		.address = 606, .count = 1, .offset = offsetof(struct lw_params, cam_ramp_divisor),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 2, .max = 100,
+		.default_value = 10,
+	},
+	{
+		.address = 607, .count = 1, .offset = offsetof(struct lw_params, cam_axis),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1,
+		.default_value = 0,
+	},
+	{
+		.address = 608, .count = 1,
+		.offset = offsetof(struct lw_params, cam_steps_per_s_max), .type = LW_TYPE_U32,
+		.flags = LW_POINT_WRITABLE, .min = 1000, .max = 4000000, .default_value = 200000,
 	},
 };
 
@@ -671,6 +722,124 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 		.address = 518, .count = 1, .offset = offsetof(struct lw_status, dwell_minus_edges),
 		.type = LW_TYPE_U32,
 	},
+	{
+		.address = 600, .count = 1, .offset = offsetof(struct lw_status, cam_bank_0_state),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 601, .count = 1, .offset = offsetof(struct lw_status, cam_bank_1_state),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 602, .count = 1, .offset = offsetof(struct lw_status, cam_reason),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 603, .count = 1, .offset = offsetof(struct lw_status, cam_reason_row),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 604, .count = 1, .offset = offsetof(struct lw_status, cam_reason_value),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 606, .count = 1, .offset = offsetof(struct lw_status, cam_reason_limit),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 608, .count = 1, .offset = offsetof(struct lw_status, cam_version),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 610, .count = 1, .offset = offsetof(struct lw_status, cam_stored),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 611, .count = 1, .offset = offsetof(struct lw_status, cam_rows),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 612, .count = 1, .offset = offsetof(struct lw_status, cam_cycle_edges),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 614, .count = 1, .offset = offsetof(struct lw_status, cam_min_usteps),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 616, .count = 1, .offset = offsetof(struct lw_status, cam_max_usteps),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 618, .count = 1,
+		.offset = offsetof(struct lw_status, cam_slope_max_permille), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 619, .count = 1,
+		.offset = offsetof(struct lw_status, cam_position_usteps), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 621, .count = 1, .offset = offsetof(struct lw_status, cam_row),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 622, .count = 1, .offset = offsetof(struct lw_status, cam_cycles),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 624, .count = 1,
+		.offset = offsetof(struct lw_status, cam_phase_in_force_edges), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 626, .count = 1, .offset = offsetof(struct lw_status, cam_waiting),
+		.type = LW_TYPE_U16,
+	},
+};
+
+const struct lw_point lw_map_cam_upload[LW_MAP_CAM_UPLOAD_COUNT] = {
+	{
+		.address = 3000, .count = 8,
+		.offset = offsetof(struct lw_cam_upload, cam_upload_name), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 65535, .default_value = 0,
+	},
+	{
+		.address = 3008, .count = 1,
+		.offset = offsetof(struct lw_cam_upload, cam_upload_version), .type = LW_TYPE_U32,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 2147483647, .default_value = 0,
+	},
+	{
+		.address = 3010, .count = 1,
+		.offset = offsetof(struct lw_cam_upload, cam_upload_interpolation),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1,
+		.default_value = 0,
+	},
+	{
+		.address = 3011, .count = 1,
+		.offset = offsetof(struct lw_cam_upload, cam_upload_row_count), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 65535, .default_value = 0,
+	},
+	{
+		.address = 3012, .count = 1,
+		.offset = offsetof(struct lw_cam_upload, cam_upload_advance), .type = LW_TYPE_I32,
+		.flags = LW_POINT_WRITABLE, .min = -2147483647, .max = 2147483647,
+		.default_value = 0,
+	},
+	{
+		.address = 3014, .count = 2,
+		.offset = offsetof(struct lw_cam_upload, cam_upload_crc), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 65535, .default_value = 0,
+	},
+	{
+		.address = 3016, .count = 1,
+		.offset = offsetof(struct lw_cam_upload, cam_upload_first_row), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 1, .max = 256, .default_value = 1,
+	},
+	{
+		.address = 3018, .count = 60,
+		.offset = offsetof(struct lw_cam_upload, cam_upload_rows), .type = LW_TYPE_I32,
+		.flags = LW_POINT_WRITABLE, .min = -2147483647, .max = 2147483647,
+		.default_value = 0,
+	},
 };
 
 const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT] = {
@@ -884,6 +1053,7 @@ const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT] = {
 	{.address = 28, .count = 1, .offset = 28, .type = LW_TYPE_BIT},
 	{.address = 29, .count = 1, .offset = 29, .type = LW_TYPE_BIT},
 	{.address = 30, .count = 1, .offset = 30, .type = LW_TYPE_BIT},
+	{.address = 31, .count = 1, .offset = 31, .type = LW_TYPE_BIT},
 };
 
 const uint8_t lw_map_coil_command[LW_MAP_COILS_COUNT] = {
@@ -957,4 +1127,13 @@ const struct lw_params lw_params_default = {
 	.lock_code = 0,
 	.lock_timeout_s = 300,
 	.line_confirm_s = 10,
+	.motion_profile = 0,
+	.cam_start = 0,
+	.cam_master_edges = 1,
+	.cam_master_units = 1,
+	.cam_slave_usteps = 1,
+	.cam_slave_units = 1,
+	.cam_ramp_divisor = 10,
+	.cam_axis = 0,
+	.cam_steps_per_s_max = 200000,
 };

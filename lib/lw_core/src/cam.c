@@ -142,6 +142,15 @@ int lw_cam_edge(struct lw_cam *cam, int dd, const struct lw_cam_table *next)
 	return whole_steps(cam);
 }
 
+int lw_cam_begin(struct lw_cam *cam, int dd, int64_t pos_usteps)
+{
+	cam->cycles = dd > 0 ? 0 : -1;
+	cam->offset = dd > 0 ? 0 : -(int64_t)cam->table->advance;
+	cam->pos_usteps = pos_usteps;
+	enter_piece(cam);
+	return whole_steps(cam);
+}
+
 /** Quotient rounded toward minus infinity, den > 0. */
 static int64_t divide_floor(int64_t num, int64_t den)
 {

@@ -16,6 +16,10 @@ void lw_controller_cut(struct lw_controller *controller)
 	struct lw_motion *motion = &controller->motion;
 
 	lw_motion_set_source(motion, LW_EDGE_SOURCE_NONE);
+	if (motion->cam.on && controller->params->cam_axis == LW_CAM_AXIS_FREE) {
+		lw_motion_place(motion, motion->window, 0, 0);
+	}
+	motion->cam.on = false;
 	motion->requests = 0;
 	motion->request_correction_usteps = 0;
 	motion->stop_at_rest = 0;
@@ -112,6 +116,7 @@ void lw_controller_configure(struct lw_controller *controller, const struct lw_p
 
 	controller->params = params;
 	controller->derived = derived;
+	controller->cam_refusal = (struct lw_cam_refusal){0};
 	controller->limit_config = lw_params_limit_switch(params);
 	lw_quadrature_configure(&controller->quadrature, &quadrature_config);
 	lw_encoder_index_configure(&controller->encoder_index, edges_per_encoder_rev(params));
@@ -244,6 +249,8 @@ uint16_t lw_controller_launch_inhibit(const struct lw_controller *controller)
 	inhibit |= (unsigned int)((controller->motion.requests & LW_MOTION_REQUEST_CORRECTION) != 0)
 		   << LW_LAUNCH_INHIBIT_CORRECTION;
 	inhibit |= (unsigned int)controller->stepper_alarm << LW_LAUNCH_INHIBIT_STEPPER_ALARM;
+	inhibit |= (unsigned int)(controller->cam_refusal.reason != LW_REASON_NONE)
+		   << LW_LAUNCH_INHIBIT_CAM;
 	return (uint16_t)inhibit;
 }
 
@@ -414,7 +421,8 @@ void lw_controller_set_trim(struct lw_controller *controller, int32_t trim_plus_
 {
 	controller->trim_plus_um = trim_plus_um;
 	controller->trim_minus_um = trim_minus_um;
-	if (controller->state == LW_STATE_TRACKING || controller->on_orbit) {
+	if ((controller->state == LW_STATE_TRACKING && !controller->motion.cam.on) ||
+	    controller->on_orbit) {
 		lw_controller_request(controller, lw_controller_track_window(controller),
 				      LW_MOTION_REQUEST_WINDOW, 0);
 	}
@@ -423,11 +431,12 @@ void lw_controller_set_trim(struct lw_controller *controller, int32_t trim_plus_
 /** Measure the drum speed over the last LW_CONTROLLER_SPEED_TICKS ticks, and whether it rests. */
 static void measure_speed(struct lw_controller *controller, uint64_t now_us)
 {
-	const int64_t edges = controller->motion.net_edges;
-	int64_t *oldest = &controller->edge_history[controller->edge_history_next];
+	const uint32_t edges = (uint32_t)controller->motion.net_edges;
+	uint32_t *oldest = &controller->edge_history[controller->edge_history_next];
 	uint32_t *oldest_us = &controller->edge_history_us[controller->edge_history_next];
 	const uint32_t duration_us = (uint32_t)now_us - *oldest_us;
-	const int64_t speed = duration_us == 0 ? 0 : (edges - *oldest) * 1000000 / duration_us;
+	const int64_t moved = (int32_t)(edges - *oldest);
+	const int64_t speed = duration_us == 0 ? 0 : moved * 1000000 / duration_us;
 	const int64_t rest = controller->params->rest_edges_per_s;
 
 	*oldest = edges;
@@ -488,7 +497,9 @@ static void hand_over(struct lw_controller *controller)
 	const int32_t m = lw_motion_m(&controller->motion);
 	const int region = lw_law_region(&window, m);
 
-	if (controller->on_orbit || region == 0) {
+	if (controller->params->motion_profile == LW_MOTION_PROFILE_CAM) {
+		lw_cam_hand_over(controller);
+	} else if (controller->on_orbit || region == 0) {
 		lw_tracking_start(controller);
 	} else {
 		/* The sweep's slope in a reversal would stay wrong for ever: go inside first. */

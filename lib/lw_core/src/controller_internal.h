@@ -1,7 +1,7 @@
 /**
  * @file
- * What controller.c (inputs, modes, commands), homing.c (every motion by simulated edges) and
- * tracking.c (following the drum, LOS) share.
+ * What controller.c (inputs, modes, commands), homing.c (every motion by simulated edges),
+ * tracking.c (following the drum, LOS) and cam_tracking.c (following it by the cam) share.
  */
 #ifndef LW_CONTROLLER_INTERNAL_H
 #define LW_CONTROLLER_INTERNAL_H
@@ -43,11 +43,20 @@ void lw_homing_move_to(struct lw_controller *controller, int32_t m, int32_t targ
 void lw_homing_halt(struct lw_controller *controller, enum lw_state rest_state);
 
 /* tracking.c */
-/** Follow the drum from here. */
+/** Let the drum move what has been placed, by the law or by a cam. */
+void lw_tracking_begin(struct lw_controller *controller);
+/** Follow the drum by the law from here. */
 void lw_tracking_start(struct lw_controller *controller);
 /** Stop following a resting drum. The carriage stands; it can go on as if nothing had been. */
 void lw_tracking_leave(struct lw_controller *controller);
 void lw_tracking_tick(struct lw_controller *controller,
 		      const struct lw_controller_trigger *triggers);
+
+/* cam_tracking.c */
+/**
+ * Follow the drum by the cam from here, or go to where that begins; `cam_refusal` says if neither
+ * can be.
+ */
+void lw_cam_hand_over(struct lw_controller *controller);
 
 #endif /* LW_CONTROLLER_INTERNAL_H */

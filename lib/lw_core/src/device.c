@@ -40,6 +40,9 @@ static bool is_guarded(enum lw_command command)
 	case LW_COMMAND_FACTORY_LINE:
 	case LW_COMMAND_FACTORY_ALL:
 	case LW_COMMAND_TRY_LINE:
+	case LW_COMMAND_CAM_CHECK:
+	case LW_COMMAND_CAM_ACTIVATE:
+	case LW_COMMAND_CAM_DISCARD:
 		return true;
 	case LW_COMMAND_NONE:
 	case LW_COMMAND_INDEX:
@@ -93,6 +96,9 @@ int lw_device_allow_command(const struct lw_device *device, enum lw_command comm
 		return lw_controller_busy(controller, why);
 	case LW_COMMAND_NONE:
 	case LW_COMMAND_STOP:
+	case LW_COMMAND_CAM_CHECK:
+	case LW_COMMAND_CAM_ACTIVATE:
+	case LW_COMMAND_CAM_DISCARD:
 		break;
 	}
 	return 0;
@@ -111,7 +117,8 @@ static void apply(struct lw_device *device)
 {
 	struct lw_derived derived;
 
-	if (lw_params_derive(&device->staged, &derived, &device->command.why)) {
+	if (lw_params_derive(&device->staged, &derived, &device->command.why) ||
+	    lw_device_cam_check(device, &device->staged, &device->command.why)) {
 		device->command.result = LW_RESULT_REFUSED;
 		lw_device_log(device, LW_EVENT_APPLY_REFUSED, device->command.why.reason);
 		return;
@@ -126,6 +133,7 @@ static void apply(struct lw_device *device)
 	device->active = device->staged;
 	device->derived = derived;
 	lw_controller_configure(&device->controller, &device->active, &device->derived, need_index);
+	lw_device_cam_configure(device);
 	lw_device_log(device, LW_EVENT_APPLIED, 0);
 }
 
@@ -168,6 +176,11 @@ void lw_device_run_command(struct lw_device *device, enum lw_command command)
 	case LW_COMMAND_TRY_LINE:
 		device->command.result = LW_RESULT_IN_PROGRESS;
 		lw_device_line_try(device);
+		break;
+	case LW_COMMAND_CAM_CHECK:
+	case LW_COMMAND_CAM_ACTIVATE:
+	case LW_COMMAND_CAM_DISCARD:
+		lw_device_cam_run(device, command);
 		break;
 	case LW_COMMAND_NONE:
 		break;
@@ -226,16 +239,18 @@ static void note_saved(struct lw_device *device, int result)
 void lw_device_end_write(struct lw_device *device, int result)
 {
 	struct lw_store *store = device->config->store;
-	const bool is_params = store->writing_slot < LW_STORE_JOURNAL;
+	const unsigned int slot = store->writing_slot;
 
 	if (!store->writing) {
 		return;
 	}
 	lw_store_end_write(store, result);
-	if (is_params) {
+	if (slot < LW_STORE_JOURNAL) {
 		note_saved(device, result);
-	} else {
+	} else if (slot < LW_STORE_CAM) {
 		lw_device_note_journal(device);
+	} else {
+		lw_device_cam_stored(device, result);
 	}
 	device->controller.storing = lw_store_saving(store);
 }
@@ -266,8 +281,10 @@ void lw_device_init(struct lw_device *device, const struct lw_device_config *con
 	device->staged = device->active;
 
 	lw_controller_init(&device->controller, &device->active, &device->derived, inputs, now_us);
+	lw_device_cam_init(device);
 	lw_device_make_bank(device);
 	device->files[0] = lw_device_log_file(device);
+	lw_device_cam_files(device, &device->files[1]);
 	device->slave_config = (struct lw_slave_config){
 		.pdu.bank = &device->bank,
 		.pdu.files = device->files,
@@ -295,6 +312,7 @@ void lw_device_tick(struct lw_device *device, uint64_t now_us)
 	}
 	device->controller.master_lost = timeout_us > 0 && now_us - device->heard_us > timeout_us;
 	lw_controller_tick(&device->controller, now_us);
+	lw_device_cam_tick(device);
 	watch_command(device);
 	lw_lock_tick(&device->lock, now_us);
 	lw_device_line_tick(device);

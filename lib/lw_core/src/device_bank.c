@@ -90,6 +90,7 @@ static const void *setpoints_image(void *context)
 			       : 0,
 		.trim_plus_um = controller->trim_plus_um,
 		.trim_minus_um = controller->trim_minus_um,
+		.cam_phase_edges = controller->motion.cam.phase_target_edges,
 	};
 	return &device->setpoints_image;
 }
@@ -200,6 +201,9 @@ static void setpoints_store(void *context, const struct lw_point *point, uint16_
 		lw_lock_write(&device->lock, (uint32_t)value,
 			      (uint32_t)device->active.lock_timeout_s, device->now_us);
 		break;
+	case LW_ADDRESS_CAM_PHASE_EDGES:
+		controller->motion.cam.phase_target_edges = value;
+		break;
 	default:
 		break;
 	}
@@ -293,6 +297,7 @@ void lw_device_make_bank(struct lw_device *device)
 		 .address_offset = LW_MAP_STORED_ADDRESS_OFFSET,
 		 .context = &device->config->store->params,
 		 .image = params_image},
+		lw_device_cam_section(device),
 	};
 
 	memcpy(device->sections, sections, sizeof(sections));

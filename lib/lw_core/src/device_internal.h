@@ -67,6 +67,44 @@ bool lw_device_overspeed(const struct lw_device *device);
 /** The event log as a file. */
 struct lw_pdu_file lw_device_log_file(struct lw_device *device);
 
+/* device_cam.c */
+
+/** Power up: the newest stored table is in force. */
+void lw_device_cam_init(struct lw_device *device);
+
+/** Files of the banks, one for each. */
+void lw_device_cam_files(struct lw_device *device, struct lw_pdu_file *files);
+
+/** Registers of the upload. */
+struct lw_bank_section lw_device_cam_section(struct lw_device *device);
+
+/** Run CAM_CHECK, CAM_ACTIVATE or CAM_DISCARD. */
+void lw_device_cam_run(struct lw_device *device, enum lw_command command);
+
+/**
+ * May this set be made active with the table that is in force?
+ *
+ * @retval 0 yes
+ * @retval -EINVAL it is to be followed and cannot be; `why` says why
+ */
+int lw_device_cam_check(struct lw_device *device, const struct lw_params *params,
+			struct lw_refusal *why);
+
+/** Check the tables again under the active set. While nothing moves. */
+void lw_device_cam_configure(struct lw_device *device);
+
+/** The table in force has been stored, or could not be: then it is tried again at a change. */
+void lw_device_cam_stored(struct lw_device *device, int result);
+
+/** Notice that a queued table has come into force. */
+void lw_device_cam_tick(struct lw_device *device);
+
+/** Does a table wait for the end of the cycle? */
+bool lw_device_cam_queued(const struct lw_device *device);
+
+/** Fill the registers cam_* of the status. */
+void lw_device_cam_status(const struct lw_device *device, struct lw_status *status);
+
 /** Fill the list of sections. */
 void lw_device_make_bank(struct lw_device *device);
 

@@ -47,6 +47,7 @@ static uint32_t flags(const struct lw_device *device, uint16_t launch_inhibit)
 	FLAG(LOCKED, lw_lock_is_closed(&device->lock, device->active.lock_code));
 	FLAG(LINE_TRIAL, lw_device_line_on_trial(device));
 	FLAG(WATCHDOG_RESET, device->config->watchdog_reset);
+	FLAG(CAM_QUEUED, lw_device_cam_queued(device));
 #undef FLAG
 	return bits;
 }
@@ -190,4 +191,5 @@ void lw_device_refresh_status(struct lw_device *device)
 		.dwell_plus_edges = derived->dwell_plus_edges,
 		.dwell_minus_edges = derived->dwell_minus_edges,
 	};
+	lw_device_cam_status(device, &device->status_image);
 }

@@ -222,6 +222,12 @@ static void serve_requests(struct lw_motion *motion)
 	}
 }
 
+/** Is there no step to be given, or none that way? */
+static bool is_blocked(const struct lw_motion *motion, int steps)
+{
+	return steps == 0 || (motion->blocked & (steps > 0 ? LW_MOTION_PLUS : LW_MOTION_MINUS));
+}
+
 static int take_edge(struct lw_motion *motion, int dd)
 {
 	const int32_t before_usteps = lw_law_pos_usteps(lw_law_m(&motion->law));
@@ -233,12 +239,25 @@ static int take_edge(struct lw_motion *motion, int dd)
 	if (motion->requests) {
 		serve_requests(motion);
 	}
-	if (step == 0 || (motion->blocked & (step > 0 ? LW_MOTION_PLUS : LW_MOTION_MINUS))) {
+	if (is_blocked(motion, step)) {
 		return 0;
 	}
 	motion->steps++;
 	motion->last_step = step;
 	return step;
+}
+
+static int take_cam_edge(struct lw_motion *motion, int dd)
+{
+	const int steps = lw_cam_motion_edge(&motion->cam, motion->edges, dd);
+
+	motion->law.rel += (uint32_t)steps * LW_USTEP;
+	if (is_blocked(motion, steps)) {
+		return 0;
+	}
+	motion->steps += (uint32_t)(steps > 0 ? steps : -steps);
+	motion->last_step = steps > 0 ? 1 : -1;
+	return steps;
 }
 
 int lw_motion_long_edge(struct lw_motion *motion, int dd)
@@ -249,6 +268,9 @@ int lw_motion_long_edge(struct lw_motion *motion, int dd)
 	if (motion->source != LW_EDGE_SOURCE_ENCODER) {
 		motion->unfollowed_edges += (uint32_t)dd;
 		return 0;
+	}
+	if (motion->cam.on) {
+		return take_cam_edge(motion, dd);
 	}
 	step = take_edge(motion, dd);
 	if (!motion->requests && !motion->blocked && !law->dwell_plus_edges &&

@@ -450,6 +450,11 @@ int lw_params_derive(const struct lw_params *params, struct lw_derived *derived,
 		ret = check_motion(params, &result, why);
 	}
 	if (ret == 0) {
+		if (params->cam_axis == LW_CAM_AXIS_FREE &&
+		    params->cam_start != LW_CAM_START_RELATIVE) {
+			return refuse(why, LW_REASON_CAM_FREE_AXIS, LW_ADDRESS_CAM_START,
+				      params->cam_start, LW_CAM_START_RELATIVE);
+		}
 		*derived = result;
 	}
 	return ret;

@@ -7,6 +7,8 @@
 
 #define JOURNAL_KIND   "LWJL"
 #define JOURNAL_SCHEMA 1
+#define CAM_KIND       "LWCM"
+#define CAM_SCHEMA     1
 #define COUNTERS_SIZE  16
 
 void lw_store_init(struct lw_store *store)
@@ -43,6 +45,33 @@ static int open_journal(const uint8_t *bytes, size_t size, struct lw_record *rec
 			       (record->length - COUNTERS_SIZE) % LW_LOG_RECORD_SIZE == 0
 		       ? 0
 		       : -EINVAL;
+}
+
+/** Read a table into an empty bank, which stays empty on any error. */
+static int open_cam(const uint8_t *bytes, size_t size, struct lw_cam_bank *bank,
+		    struct lw_record *record)
+{
+	const int ret = lw_record_open(bytes, size, CAM_KIND, record);
+
+	if (ret) {
+		return ret;
+	}
+	if (record->schema != CAM_SCHEMA) {
+		return -ENOTSUP;
+	}
+	if (record->length > 2 * LW_CAM_WORDS) {
+		return -EINVAL;
+	}
+	for (size_t i = 0; i < record->length / 2; i++) {
+		lw_cam_bank_put(bank, (unsigned int)i, lw_get16(record->payload + 2 * i));
+	}
+	if (record->length != 2 * (size_t)lw_cam_bank_words(bank) ||
+	    lw_cam_bank_crc(bank) != bank->crc) {
+		*bank = (struct lw_cam_bank){.state = LW_CAM_BANK_STATE_EMPTY};
+		return -EINVAL;
+	}
+	bank->state = LW_CAM_BANK_STATE_READY;
+	return 0;
 }
 
 static void take_journal(struct lw_store *store, const struct lw_record *record)
@@ -87,10 +116,13 @@ void lw_store_load(struct lw_store *store, unsigned int slot, const uint8_t *byt
 {
 	struct lw_store_pair *pair = &store->pairs[slot / 2];
 	const bool is_params = slot < LW_STORE_JOURNAL;
+	const bool is_cam = slot >= LW_STORE_CAM;
 	struct lw_params params;
 	struct lw_record record = {0};
-	const int ret = is_params ? open_params(bytes, size, &params, &record)
-				  : open_journal(bytes, size, &record);
+	const int ret =
+		is_params ? open_params(bytes, size, &params, &record)
+		: is_cam  ? open_cam(bytes, size, &store->cam_banks[slot - LW_STORE_CAM], &record)
+			  : open_journal(bytes, size, &record);
 
 	pair->state[slot % 2] =
 		slot_state(ret, !is_params || record.schema == LW_PARAM_RECORD_SCHEMA);
@@ -110,7 +142,7 @@ void lw_store_load(struct lw_store *store, unsigned int slot, const uint8_t *byt
 	pair->used_sequence = record.sequence;
 	if (is_params) {
 		store->params = params;
-	} else {
+	} else if (!is_cam) {
 		take_journal(store, &record);
 	}
 }
@@ -129,6 +161,33 @@ void lw_store_save(struct lw_store *store, const struct lw_params *params)
 bool lw_store_saving(const struct lw_store *store)
 {
 	return store->params_wanted || (store->writing && store->writing_slot < LW_STORE_JOURNAL);
+}
+
+int lw_store_cam_bank(const struct lw_store *store)
+{
+	const struct lw_store_pair *pair = &store->pairs[LW_STORE_CAM / 2];
+
+	if (!pair->used) {
+		return -1;
+	}
+	/* The newest intact one may be of newer firmware; then the other one was used. */
+	return pair->state[pair->newest] == LW_SLOT_STATE_GOOD ? pair->newest : 1 - pair->newest;
+}
+
+void lw_store_save_cam(struct lw_store *store, const struct lw_cam_bank *bank)
+{
+	store->cam_wanted = bank;
+}
+
+static size_t encode_cam(const struct lw_cam_bank *bank, uint32_t sequence, uint8_t *bytes)
+{
+	const unsigned int words = lw_cam_bank_words(bank);
+	uint8_t *at = bytes + LW_RECORD_HEAD_SIZE;
+
+	for (unsigned int i = 0; i < words; i++) {
+		at = lw_put16(at, lw_cam_bank_get(bank, i));
+	}
+	return lw_record_seal(bytes, CAM_KIND, CAM_SCHEMA, sequence, 2 * words);
 }
 
 static size_t encode_journal(struct lw_store *store, uint32_t sequence, uint8_t *bytes)
@@ -160,10 +219,13 @@ size_t lw_store_begin_write(struct lw_store *store, unsigned int *slot,
 			    uint8_t bytes[LW_STORE_SLOT_SIZE])
 {
 	const bool is_params = store->params_wanted;
-	const unsigned int first = is_params ? LW_STORE_PARAMS : LW_STORE_JOURNAL;
+	const struct lw_cam_bank *cam = store->cam_wanted;
+	const unsigned int first = is_params     ? LW_STORE_PARAMS
+				   : cam != NULL ? LW_STORE_CAM
+						 : LW_STORE_JOURNAL;
 	const struct lw_store_pair *pair = &store->pairs[first / 2];
 
-	if (store->writing || !(store->params_wanted || store->journal_wanted)) {
+	if (store->writing || !(is_params || cam != NULL || store->journal_wanted)) {
 		return 0;
 	}
 	*slot = first + (pair->intact && pair->newest == 0 ? 1 : 0);
@@ -172,6 +234,10 @@ size_t lw_store_begin_write(struct lw_store *store, unsigned int *slot,
 	if (is_params) {
 		store->params_wanted = false;
 		return lw_param_record_encode(&store->saving, next_sequence(pair), bytes);
+	}
+	if (cam != NULL) {
+		store->cam_wanted = NULL;
+		return encode_cam(cam, next_sequence(pair), bytes);
 	}
 	store->journal_wanted = false;
 	return encode_journal(store, next_sequence(pair), bytes);
@@ -199,6 +265,8 @@ void lw_store_end_write(struct lw_store *store, int result)
 	if (store->writing_slot < LW_STORE_JOURNAL) {
 		pair->used_schema = LW_PARAM_RECORD_SCHEMA;
 		store->params = store->saving;
+	} else if (store->writing_slot >= LW_STORE_CAM) {
+		pair->used_schema = CAM_SCHEMA;
 	} else {
 		pair->used_schema = JOURNAL_SCHEMA;
 		store->log_stored = store->log_writing;

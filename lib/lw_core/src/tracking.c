@@ -16,19 +16,10 @@ static bool in_reversal(const struct lw_controller *controller, int side)
 	       -lw_side_direction(side);
 }
 
-void lw_tracking_start(struct lw_controller *controller)
+void lw_tracking_begin(struct lw_controller *controller)
 {
 	struct lw_motion *motion = &controller->motion;
 
-	if (!controller->on_orbit) {
-		struct lw_law_window *spare = lw_controller_spare_window(controller);
-		const int32_t ks = controller->derived->ks;
-
-		*spare = lw_controller_track_window(controller);
-		lw_motion_place(motion, spare, lw_motion_m(motion),
-				controller->params->handover_direction == LW_SIDE_PLUS ? ks : -ks);
-		motion->requests = 0;
-	}
 	controller->on_orbit = false;
 	controller->los_recoveries = 0;
 	for (int side = 0; side < 2; side++) {
@@ -42,14 +33,31 @@ void lw_tracking_start(struct lw_controller *controller)
 	lw_motion_set_source(motion, LW_EDGE_SOURCE_ENCODER);
 }
 
+void lw_tracking_start(struct lw_controller *controller)
+{
+	struct lw_motion *motion = &controller->motion;
+
+	if (!controller->on_orbit) {
+		struct lw_law_window *spare = lw_controller_spare_window(controller);
+		const int32_t ks = controller->derived->ks;
+
+		*spare = lw_controller_track_window(controller);
+		lw_motion_place(motion, spare, lw_motion_m(motion),
+				controller->params->handover_direction == LW_SIDE_PLUS ? ks : -ks);
+		motion->requests = 0;
+	}
+	lw_tracking_begin(controller);
+}
+
 void lw_tracking_leave(struct lw_controller *controller)
 {
 	struct lw_motion *motion = &controller->motion;
 	const bool corrected = motion->requests & LW_MOTION_REQUEST_CORRECTION;
 	const int32_t correction_usteps = motion->request_correction_usteps;
+	const bool by_cam = motion->cam.on;
 
 	lw_controller_cut(controller);
-	controller->on_orbit = !corrected;
+	controller->on_orbit = !corrected && !by_cam;
 	if (corrected) {
 		/* Out of the pattern a held correction can be made at once. */
 		lw_motion_place(motion, motion->window,
@@ -106,6 +114,9 @@ static void judge_trigger(struct lw_controller *controller, int side,
 	}
 
 	record(controller, &controller->los2[side], at->pos_usteps * LW_USTEP);
+	if (motion->cam.on) {
+		return; /* a cam has no sweep to correct it in: it goes on until it is indexed */
+	}
 	if (controller->los_recoveries < UINT16_MAX) {
 		controller->los_recoveries++;
 	}
@@ -159,6 +170,9 @@ static void judge_reversal(struct lw_controller *controller, int side)
 void lw_tracking_tick(struct lw_controller *controller,
 		      const struct lw_controller_trigger *triggers)
 {
+	if (controller->motion.cam.on && controller->params->cam_axis == LW_CAM_AXIS_FREE) {
+		return; /* its position says nothing about switches */
+	}
 	for (int side = 0; side < 2; side++) {
 		/* A trigger counts only when the carriage moves toward its switch. */
 		if (triggers[side].taken &&

@@ -1,6 +1,8 @@
 """Cam tables: the rows, the compiled core's check of them, and the compiled cam replayed."""
 
 import ctypes
+import struct
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -153,6 +155,33 @@ class Table:
                     )
             table.rows[at] = Row(master, slave)
         return table
+
+
+def words(table: Table) -> list[int]:
+    """A table as the 16-bit words of a bank: head with CRC-32, rows (lw/cam_banks.h)."""
+    name = table.name.encode("ascii", "replace")[:NAME_SIZE].ljust(NAME_SIZE, b"\0")
+    head = struct.pack(
+        ">16sIHHi", name, table.version, table.interpolation, len(table.rows), table.advance
+    )
+    rows = b"".join(struct.pack(">ii", master, slave) for master, slave in table.rows)
+    crc = struct.pack(">I", zlib.crc32(head + rows))
+    return list(struct.unpack(f">{len(head + crc + rows) // 2}H", head + crc + rows))
+
+
+def from_words(words: Sequence[int]) -> Table:
+    """The table in the words of a bank; ToolError if its CRC is wrong."""
+    data = struct.pack(f">{len(words)}H", *words)
+    name, version, interpolation, count, advance, crc = struct.unpack(">16sIHHiI", data[:32])
+    rows = data[32 : 32 + 8 * count]
+    if len(rows) != 8 * count or zlib.crc32(data[:28] + rows) != crc:
+        raise ToolError("The bank holds no whole cam table: its CRC is wrong.")
+    return Table(
+        tuple(struct.iter_unpack(">ii", rows)),
+        CamInterpolation(interpolation),
+        advance,
+        name.rstrip(b"\0").decode("ascii", "replace"),
+        version,
+    )
 
 
 @dataclass(frozen=True)

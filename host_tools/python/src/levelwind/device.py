@@ -135,6 +135,16 @@ class Device:
 
     # ---- writing -------------------------------------------------------------------------------
 
+    def write_file(self, number: int, first: int, data: bytes) -> None:
+        """Write records of a file (FC21), two bytes each, all or nothing."""
+        records = FileRecord(file_number=number, record_number=first, record_data=data)
+        self._request(
+            lambda: self._client.write_file_record(
+                [records], device_id=self.line.unit, no_response_expected=False
+            ),
+            attempts=1,
+        )
+
     def write(self, values: Mapping[str, int]) -> None:
         """Write holding registers, all or nothing.
 

@@ -157,6 +157,13 @@ class Command(MapEnum):
         "try_line",
         "Use the active line settings now; the old ones again if no valid request comes within line_confirm_s",
     )
+    CAM_CHECK = 30, "cam_check", "Check the uploaded cam table as a whole, and keep it"
+    CAM_ACTIVATE = (
+        31,
+        "cam_activate",
+        "Put the checked cam table in force: at once, or at the end of the cycle if a cam is running",
+    )
+    CAM_DISCARD = 32, "cam_discard", "Drop the queued cam table, or else the upload"
 
 
 class Result(MapEnum):
@@ -347,6 +354,46 @@ class Reason(MapEnum):
         "Last minus first slave of the cam table differs from the declared advance (0 if cyclic)",
     )
     CAM_INTERPOLATION = 80, "cam_interpolation", "The cam table names an unknown interpolation"
+    CAM_CRC = (
+        81,
+        "cam_crc",
+        "The cam table is not the one whose CRC was uploaded with it: upload it again as a whole",
+    )
+    CAM_BEYOND_FLANGE = (
+        82,
+        "cam_beyond_flange",
+        "A position of the cam table is beyond a flange (in microsteps)",
+    )
+    CAM_NO_TABLE = (
+        83,
+        "cam_no_table",
+        "There is no checked cam table for this: upload one and give cam_check",
+    )
+    CAM_BANK_IN_USE = (
+        84,
+        "cam_bank_in_use",
+        "This cam bank is in force or queued: upload into the other one",
+    )
+    CAM_QUEUED = (
+        85,
+        "cam_queued",
+        "A cam table is queued: wait for the end of the cycle, or give cam_discard",
+    )
+    CAM_DOES_NOT_JOIN = (
+        86,
+        "cam_does_not_join",
+        "The new cam table must begin at the slave position where the one in force begins (cam_start other than relative)",
+    )
+    CAM_FREE_AXIS = (
+        87,
+        "cam_free_axis",
+        "A free axis has no position to begin at: cam_start must be relative",
+    )
+    CAM_ADVANCES = (
+        88,
+        "cam_advances",
+        "A cam table that advances leaves the flanges behind: it needs cam_axis free",
+    )
 
 
 class Host(MapEnum):
@@ -422,7 +469,7 @@ class Event(MapEnum):
     SLOT_DAMAGED = (
         4,
         "slot_damaged",
-        "A stored record was damaged. Detail: slot, 0 and 1 parameters, 2 and 3 log",
+        "A stored record was damaged. Detail: slot, 0 and 1 parameters, 2 and 3 log, 4 and 5 cam tables",
     )
     SLOT_NEWER = 5, "slot_newer", "A stored record of newer firmware was not read. Detail: slot"
     SLOT_REFUSED = 6, "slot_refused", "A stored parameter set was not accepted. Detail: slot"
@@ -459,6 +506,54 @@ class Event(MapEnum):
     FACTORY_STAGED = 44, "factory_staged", "Factory values were staged"
     LOCK_OPENED = 50, "lock_opened", "The write lock was opened"
     LOCK_CLOSED = 51, "lock_closed", "The write lock closed"
+
+
+class MotionProfile(MapEnum):
+    """What the carriage follows the drum by."""
+
+    SCREW = 0, "screw", "The reversing screw: level winding"
+    CAM = 1, "cam", "The active cam table"
+
+
+class CamStart(MapEnum):
+    """How a cam begins at a hand-over."""
+
+    ABSOLUTE = (
+        0,
+        "absolute",
+        "The carriage goes to the slave position of the odometer's place in the cycle, then follows",
+    )
+    RELATIVE = (
+        1,
+        "relative",
+        "The cycle begins here and now, the slave position where the carriage is",
+    )
+    NEXT_CYCLE = (
+        2,
+        "next_cycle",
+        "The carriage goes to the table's first slave position and follows from the odometer's next begin of a cycle",
+    )
+
+
+class CamAxis(MapEnum):
+    """What a cam moves."""
+
+    CARRIAGE = 0, "carriage", "The carriage, between the flanges"
+    FREE = (
+        1,
+        "free",
+        "An axis without ends; a table may advance. Its position is 0 wherever it is left",
+    )
+
+
+class CamBankState(MapEnum):
+    """What a bank of cam tables holds."""
+
+    EMPTY = 0, "empty", "Nothing"
+    LOADING = 1, "loading", "Parts of an upload; give cam_check when it is complete"
+    READY = 2, "ready", "A checked table that is not in force"
+    QUEUED = 3, "queued", "A checked table that waits for the end of the cycle"
+    ACTIVE = 4, "active", "The table in force"
 
 
 class CamInterpolation(MapEnum):
@@ -607,6 +702,7 @@ class Flag(MapEnum):
         "watchdog_reset",
         "The last restart was made by the watchdog: a part of the firmware had stopped",
     )
+    CAM_QUEUED = 31, "cam_queued", "A cam table waits for the end of the cycle"
 
 
 class LaunchInhibit(MapEnum):
@@ -621,6 +717,7 @@ class LaunchInhibit(MapEnum):
     MASTER_LOST = 6, "master_lost", "The Modbus master is silent"
     CORRECTION = 7, "correction", "A re-index correction is pending"
     STEPPER_ALARM = 8, "stepper_alarm", "The stepper driver reports an alarm"
+    CAM = 9, "cam", "The motion profile is cam and its table cannot be followed; see cam_reason"
 
 
 # What names the detail of an event; the details of the others are plain numbers.
@@ -1025,6 +1122,14 @@ POINTS: dict[str, Point] = {
             block="discretes",
         ),
         Point(
+            name="cam_queued",
+            address=31,
+            space="discrete",
+            type="bit",
+            text="A cam table waits for the end of the cycle",
+            block="discretes",
+        ),
+        Point(
             name="command",
             address=0,
             space="holding",
@@ -1032,7 +1137,8 @@ POINTS: dict[str, Point] = {
             text="Writing a code runs the command; reads the last one",
             block="setpoints",
             min=0,
-            max=10,
+            max=32,
+            allowed=(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 30, 31, 32),
             default=0,
             writable=True,
             command=True,
@@ -1100,6 +1206,20 @@ POINTS: dict[str, Point] = {
             min=0,
             max=999999,
             default=0,
+            writable=True,
+        ),
+        Point(
+            name="cam_phase_edges",
+            address=630,
+            space="holding",
+            type="i32",
+            text="Live shift of the cam's master, one edge per edge until it is reached",
+            block="setpoints",
+            words=2,
+            min=-100000000,
+            max=100000000,
+            default=0,
+            unit="edges",
             writable=True,
         ),
         Point(
@@ -1959,6 +2079,139 @@ POINTS: dict[str, Point] = {
             mirrors={"active": 1187, "stored": 2187},
         ),
         Point(
+            name="motion_profile",
+            address=600,
+            space="holding",
+            type="u16",
+            text="What the carriage follows the drum by",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            enum=MotionProfile,
+            mirrors={"active": 1600, "stored": 2600},
+        ),
+        Point(
+            name="cam_start",
+            address=601,
+            space="holding",
+            type="u16",
+            text="How a cam begins at a hand-over",
+            block="parameters",
+            min=0,
+            max=2,
+            default=0,
+            scope="motion",
+            writable=True,
+            enum=CamStart,
+            mirrors={"active": 1601, "stored": 2601},
+        ),
+        Point(
+            name="cam_master_edges",
+            address=602,
+            space="holding",
+            type="u16",
+            text="So many encoder edges are cam_master_units of a cam table's master column",
+            block="parameters",
+            min=1,
+            max=10000,
+            default=1,
+            unit="edges",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1602, "stored": 2602},
+        ),
+        Point(
+            name="cam_master_units",
+            address=603,
+            space="holding",
+            type="u16",
+            text="See cam_master_edges",
+            block="parameters",
+            min=1,
+            max=10000,
+            default=1,
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1603, "stored": 2603},
+        ),
+        Point(
+            name="cam_slave_usteps",
+            address=604,
+            space="holding",
+            type="u16",
+            text="So many microsteps are cam_slave_units of a cam table's slave column",
+            block="parameters",
+            min=1,
+            max=10000,
+            default=1,
+            unit="usteps",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1604, "stored": 2604},
+        ),
+        Point(
+            name="cam_slave_units",
+            address=605,
+            space="holding",
+            type="u16",
+            text="See cam_slave_usteps",
+            block="parameters",
+            min=1,
+            max=10000,
+            default=1,
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1605, "stored": 2605},
+        ),
+        Point(
+            name="cam_ramp_divisor",
+            address=606,
+            space="holding",
+            type="u16",
+            text="Trapezoid rows: each ramp is this part of its row",
+            block="parameters",
+            min=2,
+            max=100,
+            default=10,
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1606, "stored": 2606},
+        ),
+        Point(
+            name="cam_axis",
+            address=607,
+            space="holding",
+            type="u16",
+            text="What a cam moves",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            enum=CamAxis,
+            mirrors={"active": 1607, "stored": 2607},
+        ),
+        Point(
+            name="cam_steps_per_s_max",
+            address=608,
+            space="holding",
+            type="u32",
+            text="Fastest step pulses that the stepper driver and the motor follow; a cam table may ask for no more at overspeed_trip_edges_per_s",
+            block="parameters",
+            words=2,
+            min=1000,
+            max=4000000,
+            default=200000,
+            unit="usteps/s",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1608, "stored": 2608},
+        ),
+        Point(
             name="self_test",
             address=0,
             space="input",
@@ -2765,6 +3018,271 @@ POINTS: dict[str, Point] = {
             block="status",
             words=2,
             unit="edges",
+        ),
+        Point(
+            name="cam_bank_0_state",
+            address=600,
+            space="input",
+            type="u16",
+            text="What the first bank of cam tables holds",
+            block="status",
+            enum=CamBankState,
+        ),
+        Point(
+            name="cam_bank_1_state",
+            address=601,
+            space="input",
+            type="u16",
+            text="What the second bank of cam tables holds",
+            block="status",
+            enum=CamBankState,
+        ),
+        Point(
+            name="cam_reason",
+            address=602,
+            space="input",
+            type="u16",
+            text="Why the last check of a cam table refused it, or why the active one cannot be followed",
+            block="status",
+            enum=Reason,
+        ),
+        Point(
+            name="cam_reason_row",
+            address=603,
+            space="input",
+            type="u16",
+            text="The offending row, counted from 1; 0 if no single row is to blame",
+            block="status",
+        ),
+        Point(
+            name="cam_reason_value",
+            address=604,
+            space="input",
+            type="i32",
+            text="The offending value",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="cam_reason_limit",
+            address=606,
+            space="input",
+            type="i32",
+            text="The limit that it broke",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="cam_version",
+            address=608,
+            space="input",
+            type="u32",
+            text="Version of the active cam table",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="cam_stored",
+            address=610,
+            space="input",
+            type="u16",
+            text="1 when it is stored, so that the next power-up begins with it; written at rest only",
+            block="status",
+        ),
+        Point(
+            name="cam_rows",
+            address=611,
+            space="input",
+            type="u16",
+            text="Its rows; 0: there is none",
+            block="status",
+        ),
+        Point(
+            name="cam_cycle_edges",
+            address=612,
+            space="input",
+            type="u32",
+            text="Length of its cycle",
+            block="status",
+            words=2,
+            unit="edges",
+        ),
+        Point(
+            name="cam_min_usteps",
+            address=614,
+            space="input",
+            type="i32",
+            text="Its lowest position",
+            block="status",
+            words=2,
+            unit="usteps",
+        ),
+        Point(
+            name="cam_max_usteps",
+            address=616,
+            space="input",
+            type="i32",
+            text="Its highest position",
+            block="status",
+            words=2,
+            unit="usteps",
+        ),
+        Point(
+            name="cam_slope_max_permille",
+            address=618,
+            space="input",
+            type="u16",
+            text="Its steepest slope, ramps included",
+            block="status",
+            unit="usteps/1000 edges",
+        ),
+        Point(
+            name="cam_position_usteps",
+            address=619,
+            space="input",
+            type="i32",
+            text="Slave position by the table, modulo 2^32",
+            block="status",
+            words=2,
+            unit="usteps",
+        ),
+        Point(
+            name="cam_row",
+            address=621,
+            space="input",
+            type="u16",
+            text="Row behind the master, counted from 1; 0: no cam is running",
+            block="status",
+        ),
+        Point(
+            name="cam_cycles",
+            address=622,
+            space="input",
+            type="i32",
+            text="Net cycles since the hand-over",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="cam_phase_in_force_edges",
+            address=624,
+            space="input",
+            type="i32",
+            text="How much of cam_phase_edges is reached",
+            block="status",
+            words=2,
+            unit="edges",
+        ),
+        Point(
+            name="cam_waiting",
+            address=626,
+            space="input",
+            type="u16",
+            text="1 while a cam waits for the begin of the next cycle",
+            block="status",
+        ),
+        Point(
+            name="cam_upload_name",
+            address=3000,
+            space="holding",
+            type="u16",
+            text="Name, two characters of ASCII in a register",
+            block="cam_upload",
+            count=8,
+            min=0,
+            max=65535,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="cam_upload_version",
+            address=3008,
+            space="holding",
+            type="u32",
+            text="Version, for people",
+            block="cam_upload",
+            words=2,
+            min=0,
+            max=2147483647,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="cam_upload_interpolation",
+            address=3010,
+            space="holding",
+            type="u16",
+            text="How to go from row to row",
+            block="cam_upload",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            enum=CamInterpolation,
+        ),
+        Point(
+            name="cam_upload_row_count",
+            address=3011,
+            space="holding",
+            type="u16",
+            text="Rows",
+            block="cam_upload",
+            min=0,
+            max=65535,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="cam_upload_advance",
+            address=3012,
+            space="holding",
+            type="i32",
+            text="Slave units that a cycle adds; 0: cyclic",
+            block="cam_upload",
+            words=2,
+            min=-2147483647,
+            max=2147483647,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="cam_upload_crc",
+            address=3014,
+            space="holding",
+            type="u16",
+            text="CRC-32 of the 14 registers before and 4 per row, high word first",
+            block="cam_upload",
+            count=2,
+            min=0,
+            max=65535,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="cam_upload_first_row",
+            address=3016,
+            space="holding",
+            type="u16",
+            text="Row that cam_upload_rows begins at, counted from 1; may stand in the same request",
+            block="cam_upload",
+            min=1,
+            max=256,
+            default=1,
+            writable=True,
+        ),
+        Point(
+            name="cam_upload_rows",
+            address=3018,
+            space="holding",
+            type="i32",
+            text="Window of 30 rows: master, slave, alternating",
+            block="cam_upload",
+            words=2,
+            count=60,
+            min=-2147483647,
+            max=2147483647,
+            default=0,
+            writable=True,
         ),
         Point(
             name="bench_argument",

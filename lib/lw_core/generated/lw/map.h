@@ -142,6 +142,15 @@ enum lw_command {
 	 * line_confirm_s
 	 */
 	LW_COMMAND_TRY_LINE = 10,
+	/** Check the uploaded cam table as a whole, and keep it */
+	LW_COMMAND_CAM_CHECK = 30,
+	/**
+	 * Put the checked cam table in force: at once, or at the end of the cycle if a cam is
+	 * running
+	 */
+	LW_COMMAND_CAM_ACTIVATE = 31,
+	/** Drop the queued cam table, or else the upload */
+	LW_COMMAND_CAM_DISCARD = 32,
 };
 
 /** How the last command ended */
@@ -309,6 +318,27 @@ enum lw_reason {
 	LW_REASON_CAM_WRAP = 79,
 	/** The cam table names an unknown interpolation */
 	LW_REASON_CAM_INTERPOLATION = 80,
+	/**
+	 * The cam table is not the one whose CRC was uploaded with it: upload it again as a whole
+	 */
+	LW_REASON_CAM_CRC = 81,
+	/** A position of the cam table is beyond a flange (in microsteps) */
+	LW_REASON_CAM_BEYOND_FLANGE = 82,
+	/** There is no checked cam table for this: upload one and give cam_check */
+	LW_REASON_CAM_NO_TABLE = 83,
+	/** This cam bank is in force or queued: upload into the other one */
+	LW_REASON_CAM_BANK_IN_USE = 84,
+	/** A cam table is queued: wait for the end of the cycle, or give cam_discard */
+	LW_REASON_CAM_QUEUED = 85,
+	/**
+	 * The new cam table must begin at the slave position where the one in force begins
+	 * (cam_start other than relative)
+	 */
+	LW_REASON_CAM_DOES_NOT_JOIN = 86,
+	/** A free axis has no position to begin at: cam_start must be relative */
+	LW_REASON_CAM_FREE_AXIS = 87,
+	/** A cam table that advances leaves the flanges behind: it needs cam_axis free */
+	LW_REASON_CAM_ADVANCES = 88,
 };
 
 /** What runs the core */
@@ -390,7 +420,10 @@ enum lw_event {
 	LW_EVENT_WATCHDOG_RESET = 2,
 	/** No usable stored set: the factory values are active */
 	LW_EVENT_DEFAULTS_LOADED = 3,
-	/** A stored record was damaged. Detail: slot, 0 and 1 parameters, 2 and 3 log */
+	/**
+	 * A stored record was damaged. Detail: slot, 0 and 1 parameters, 2 and 3 log, 4 and 5 cam
+	 * tables
+	 */
 	LW_EVENT_SLOT_DAMAGED = 4,
 	/** A stored record of newer firmware was not read. Detail: slot */
 	LW_EVENT_SLOT_NEWER = 5,
@@ -446,6 +479,52 @@ enum lw_event {
 	LW_EVENT_LOCK_OPENED = 50,
 	/** The write lock closed */
 	LW_EVENT_LOCK_CLOSED = 51,
+};
+
+/** What the carriage follows the drum by */
+enum lw_motion_profile {
+	/** The reversing screw: level winding */
+	LW_MOTION_PROFILE_SCREW = 0,
+	/** The active cam table */
+	LW_MOTION_PROFILE_CAM = 1,
+};
+
+/** How a cam begins at a hand-over */
+enum lw_cam_start {
+	/**
+	 * The carriage goes to the slave position of the odometer's place in the cycle, then
+	 * follows
+	 */
+	LW_CAM_START_ABSOLUTE = 0,
+	/** The cycle begins here and now, the slave position where the carriage is */
+	LW_CAM_START_RELATIVE = 1,
+	/**
+	 * The carriage goes to the table's first slave position and follows from the odometer's
+	 * next begin of a cycle
+	 */
+	LW_CAM_START_NEXT_CYCLE = 2,
+};
+
+/** What a cam moves */
+enum lw_cam_axis {
+	/** The carriage, between the flanges */
+	LW_CAM_AXIS_CARRIAGE = 0,
+	/** An axis without ends; a table may advance. Its position is 0 wherever it is left */
+	LW_CAM_AXIS_FREE = 1,
+};
+
+/** What a bank of cam tables holds */
+enum lw_cam_bank_state {
+	/** Nothing */
+	LW_CAM_BANK_STATE_EMPTY = 0,
+	/** Parts of an upload; give cam_check when it is complete */
+	LW_CAM_BANK_STATE_LOADING = 1,
+	/** A checked table that is not in force */
+	LW_CAM_BANK_STATE_READY = 2,
+	/** A checked table that waits for the end of the cycle */
+	LW_CAM_BANK_STATE_QUEUED = 3,
+	/** The table in force */
+	LW_CAM_BANK_STATE_ACTIVE = 4,
 };
 
 /** How a cam table goes from row to row */
@@ -596,6 +675,8 @@ enum lw_flag {
 	LW_FLAG_LINE_TRIAL = 29,
 	/** The last restart was made by the watchdog: a part of the firmware had stopped */
 	LW_FLAG_WATCHDOG_RESET = 30,
+	/** A cam table waits for the end of the cycle */
+	LW_FLAG_CAM_QUEUED = 31,
 };
 
 /** Bit numbers of lw_status.launch_inhibit */
@@ -618,6 +699,8 @@ enum lw_launch_inhibit_bit {
 	LW_LAUNCH_INHIBIT_CORRECTION = 7,
 	/** The stepper driver reports an alarm */
 	LW_LAUNCH_INHIBIT_STEPPER_ALARM = 8,
+	/** The motion profile is cam and its table cannot be followed; see cam_reason */
+	LW_LAUNCH_INHIBIT_CAM = 9,
 };
 
 /* Protocol addresses. Discrete inputs: enum lw_flag is the address. */
@@ -633,12 +716,13 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_JOG_MINUS   7
 
 /* Block setpoints: holding registers. */
-#define LW_ADDRESS_COMMAND       0
-#define LW_ADDRESS_MODE          1
-#define LW_ADDRESS_JOG           2
-#define LW_ADDRESS_TRIM_PLUS_UM  3
-#define LW_ADDRESS_TRIM_MINUS_UM 4
-#define LW_ADDRESS_UNLOCK        10
+#define LW_ADDRESS_COMMAND         0
+#define LW_ADDRESS_MODE            1
+#define LW_ADDRESS_JOG             2
+#define LW_ADDRESS_TRIM_PLUS_UM    3
+#define LW_ADDRESS_TRIM_MINUS_UM   4
+#define LW_ADDRESS_UNLOCK          10
+#define LW_ADDRESS_CAM_PHASE_EDGES 630
 
 /* Block parameters: holding registers. */
 #define LW_ADDRESS_ENCODER_PULSES_PER_REV        100
@@ -695,6 +779,15 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_LOCK_CODE                     184
 #define LW_ADDRESS_LOCK_TIMEOUT_S                186
 #define LW_ADDRESS_LINE_CONFIRM_S                187
+#define LW_ADDRESS_MOTION_PROFILE                600
+#define LW_ADDRESS_CAM_START                     601
+#define LW_ADDRESS_CAM_MASTER_EDGES              602
+#define LW_ADDRESS_CAM_MASTER_UNITS              603
+#define LW_ADDRESS_CAM_SLAVE_USTEPS              604
+#define LW_ADDRESS_CAM_SLAVE_UNITS               605
+#define LW_ADDRESS_CAM_RAMP_DIVISOR              606
+#define LW_ADDRESS_CAM_AXIS                      607
+#define LW_ADDRESS_CAM_STEPS_PER_S_MAX           608
 
 /* Added to an address of block parameters: the active set, as input registers. */
 #define LW_MAP_ACTIVE_ADDRESS_OFFSET 1000
@@ -791,6 +884,34 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_EDGES_PER_1000_DRUM_REVS    514
 #define LW_ADDRESS_DWELL_PLUS_EDGES            516
 #define LW_ADDRESS_DWELL_MINUS_EDGES           518
+#define LW_ADDRESS_CAM_BANK_0_STATE            600
+#define LW_ADDRESS_CAM_BANK_1_STATE            601
+#define LW_ADDRESS_CAM_REASON                  602
+#define LW_ADDRESS_CAM_REASON_ROW              603
+#define LW_ADDRESS_CAM_REASON_VALUE            604
+#define LW_ADDRESS_CAM_REASON_LIMIT            606
+#define LW_ADDRESS_CAM_VERSION                 608
+#define LW_ADDRESS_CAM_STORED                  610
+#define LW_ADDRESS_CAM_ROWS                    611
+#define LW_ADDRESS_CAM_CYCLE_EDGES             612
+#define LW_ADDRESS_CAM_MIN_USTEPS              614
+#define LW_ADDRESS_CAM_MAX_USTEPS              616
+#define LW_ADDRESS_CAM_SLOPE_MAX_PERMILLE      618
+#define LW_ADDRESS_CAM_POSITION_USTEPS         619
+#define LW_ADDRESS_CAM_ROW                     621
+#define LW_ADDRESS_CAM_CYCLES                  622
+#define LW_ADDRESS_CAM_PHASE_IN_FORCE_EDGES    624
+#define LW_ADDRESS_CAM_WAITING                 626
+
+/* Block cam_upload: holding registers. */
+#define LW_ADDRESS_CAM_UPLOAD_NAME          3000
+#define LW_ADDRESS_CAM_UPLOAD_VERSION       3008
+#define LW_ADDRESS_CAM_UPLOAD_INTERPOLATION 3010
+#define LW_ADDRESS_CAM_UPLOAD_ROW_COUNT     3011
+#define LW_ADDRESS_CAM_UPLOAD_ADVANCE       3012
+#define LW_ADDRESS_CAM_UPLOAD_CRC           3014
+#define LW_ADDRESS_CAM_UPLOAD_FIRST_ROW     3016
+#define LW_ADDRESS_CAM_UPLOAD_ROWS          3018
 
 /* Block bench: holding registers. */
 #define LW_ADDRESS_BENCH_ARGUMENT                         61440
@@ -843,6 +964,8 @@ struct lw_setpoints {
 	 * Writing lock_code opens the write lock for lock_timeout_s, writing 0 closes it; reads 0
 	 */
 	uint32_t unlock;
+	/** Live shift of the cam's master, one edge per edge until it is reached [edges] */
+	int32_t cam_phase_edges;
 };
 
 /**
@@ -967,6 +1090,27 @@ struct lw_params {
 	int32_t lock_timeout_s;
 	/** How long try_line waits for a valid request [s] */
 	int32_t line_confirm_s;
+	/** What the carriage follows the drum by (enum lw_motion_profile) */
+	int32_t motion_profile;
+	/** How a cam begins at a hand-over (enum lw_cam_start) */
+	int32_t cam_start;
+	/** So many encoder edges are cam_master_units of a cam table's master column [edges] */
+	int32_t cam_master_edges;
+	/** See cam_master_edges */
+	int32_t cam_master_units;
+	/** So many microsteps are cam_slave_units of a cam table's slave column [usteps] */
+	int32_t cam_slave_usteps;
+	/** See cam_slave_usteps */
+	int32_t cam_slave_units;
+	/** Trapezoid rows: each ramp is this part of its row */
+	int32_t cam_ramp_divisor;
+	/** What a cam moves (enum lw_cam_axis) */
+	int32_t cam_axis;
+	/**
+	 * Fastest step pulses that the stepper driver and the motor follow; a cam table may ask for
+	 * no more at overspeed_trip_edges_per_s [usteps/s]
+	 */
+	uint32_t cam_steps_per_s_max;
 };
 
 /**
@@ -1162,6 +1306,68 @@ struct lw_status {
 	uint32_t dwell_plus_edges;
 	/** Dwell at the minus side [edges] */
 	uint32_t dwell_minus_edges;
+	/** What the first bank of cam tables holds (enum lw_cam_bank_state) */
+	int32_t cam_bank_0_state;
+	/** What the second bank of cam tables holds (enum lw_cam_bank_state) */
+	int32_t cam_bank_1_state;
+	/**
+	 * Why the last check of a cam table refused it, or why the active one cannot be followed
+	 * (enum lw_reason)
+	 */
+	int32_t cam_reason;
+	/** The offending row, counted from 1; 0 if no single row is to blame */
+	int32_t cam_reason_row;
+	/** The offending value */
+	int32_t cam_reason_value;
+	/** The limit that it broke */
+	int32_t cam_reason_limit;
+	/** Version of the active cam table */
+	uint32_t cam_version;
+	/** 1 when it is stored, so that the next power-up begins with it; written at rest only */
+	int32_t cam_stored;
+	/** Its rows; 0: there is none */
+	int32_t cam_rows;
+	/** Length of its cycle [edges] */
+	uint32_t cam_cycle_edges;
+	/** Its lowest position [usteps] */
+	int32_t cam_min_usteps;
+	/** Its highest position [usteps] */
+	int32_t cam_max_usteps;
+	/** Its steepest slope, ramps included [usteps/1000 edges] */
+	int32_t cam_slope_max_permille;
+	/** Slave position by the table, modulo 2^32 [usteps] */
+	int32_t cam_position_usteps;
+	/** Row behind the master, counted from 1; 0: no cam is running */
+	int32_t cam_row;
+	/** Net cycles since the hand-over */
+	int32_t cam_cycles;
+	/** How much of cam_phase_edges is reached [edges] */
+	int32_t cam_phase_in_force_edges;
+	/** 1 while a cam waits for the begin of the next cycle */
+	int32_t cam_waiting;
+};
+
+/**
+ * The cam bank that is not in force, to write and to read. The same as the file record interface.
+ * One member for each point, in the memory type of lw/point.h.
+ */
+struct lw_cam_upload {
+	/** Name, two characters of ASCII in a register */
+	int32_t cam_upload_name[8];
+	/** Version, for people */
+	uint32_t cam_upload_version;
+	/** How to go from row to row (enum lw_cam_interpolation) */
+	int32_t cam_upload_interpolation;
+	/** Rows */
+	int32_t cam_upload_row_count;
+	/** Slave units that a cycle adds; 0: cyclic */
+	int32_t cam_upload_advance;
+	/** CRC-32 of the 14 registers before and 4 per row, high word first */
+	int32_t cam_upload_crc[2];
+	/** Row that cam_upload_rows begins at, counted from 1; may stand in the same request */
+	int32_t cam_upload_first_row;
+	/** Window of 30 rows: master, slave, alternating */
+	int32_t cam_upload_rows[60];
 };
 
 /**
@@ -1237,7 +1443,7 @@ struct lw_bench {
 	int32_t bench_profile[60];
 };
 
-#define LW_MAP_SETPOINTS_COUNT 6
+#define LW_MAP_SETPOINTS_COUNT 7
 
 /**
  * Commands and set-points, effective at once, never stored: holding registers, offsets in struct
@@ -1245,7 +1451,7 @@ struct lw_bench {
  */
 extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
 
-#define LW_MAP_PARAMS_COUNT 54
+#define LW_MAP_PARAMS_COUNT 63
 
 /**
  * Parameters (staged). APPLY makes them active, SAVE stores the active set: holding registers,
@@ -1253,13 +1459,21 @@ extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
  */
 extern const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT];
 
-#define LW_MAP_STATUS_COUNT 88
+#define LW_MAP_STATUS_COUNT 106
 
 /**
  * Identity, live status, LOS records, counters, command results and derived values: input
  * registers, offsets in struct lw_status
  */
 extern const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT];
+
+#define LW_MAP_CAM_UPLOAD_COUNT 8
+
+/**
+ * The cam bank that is not in force, to write and to read. The same as the file record interface:
+ * holding registers, offsets in struct lw_cam_upload
+ */
+extern const struct lw_point lw_map_cam_upload[LW_MAP_CAM_UPLOAD_COUNT];
 
 #define LW_MAP_BENCH_COUNT 30
 
@@ -1273,7 +1487,7 @@ extern const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT];
 /** Coils, indexed by address */
 extern const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT];
 
-#define LW_MAP_DISCRETES_COUNT 31
+#define LW_MAP_DISCRETES_COUNT 32
 
 /** Discrete inputs, indexed by address */
 extern const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT];

@@ -60,4 +60,14 @@ void lw_cam_start(struct lw_cam *cam, const struct lw_cam_table *table,
  */
 int lw_cam_edge(struct lw_cam *cam, int dd, const struct lw_cam_table *next);
 
+/**
+ * Count cycles, advance and slave position from the begin of a cycle that the last edge has passed.
+ * For the edge interrupt.
+ *
+ * @param dd direction of that edge
+ * @param pos_usteps near the first row's slave position
+ * @return steps from there to where the slave is now
+ */
+int lw_cam_begin(struct lw_cam *cam, int dd, int64_t pos_usteps);
+
 #endif /* LW_CAM_H */

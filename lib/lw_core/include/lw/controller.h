@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "lw/bank.h"
+#include "lw/cam_banks.h"
 #include "lw/encoder_index.h"
 #include "lw/limit_switch.h"
 #include "lw/map.h"
@@ -94,8 +95,13 @@ struct lw_controller {
 	int32_t trim_plus_um;
 	int32_t trim_minus_um;
 
+	/* Electronic cam. */
+	const struct lw_cam_bank
+		*cam_bank; /**< active table, or NULL; the owner's, with no cam on */
+	struct lw_cam_refusal cam_refusal; /**< why it cannot be handed over to the cam */
+
 	/* Drum speed. */
-	int64_t edge_history[LW_CONTROLLER_SPEED_TICKS];
+	uint32_t edge_history[LW_CONTROLLER_SPEED_TICKS];    /**< odometer, low half */
 	uint32_t edge_history_us[LW_CONTROLLER_SPEED_TICKS]; /**< when, low half: ticks may be late
 							      */
 	uint8_t edge_history_next;
@@ -139,7 +145,8 @@ LW_EDGE_INLINE int lw_controller_drum_edge(struct lw_controller *controller, int
 /**
  * Take the encoder's levels after a transition. For the encoder interrupt.
  *
- * @return the step of the carriage: +1, 0, -1; see lw_controller_driver_step()
+ * @return the steps of the carriage: +1, 0, -1, up to LW_CAM_STEPS_PER_EDGE_MAX either way by a
+ * cam; see lw_controller_driver_step()
  */
 LW_EDGE_INLINE int lw_controller_encoder(struct lw_controller *controller, bool a, bool b)
 {
@@ -237,5 +244,11 @@ void lw_controller_jog(struct lw_controller *controller, int direction, uint64_t
 /** Shift the reversal points. Applied in the sweep only. Already checked. */
 void lw_controller_set_trim(struct lw_controller *controller, int32_t trim_plus_um,
 			    int32_t trim_minus_um);
+
+/** Where the carriage stands by a running cam, less where the table says. */
+int64_t lw_cam_shift_usteps(const struct lw_controller *controller);
+
+/** Let the running cam go over to another table, which joins it, at the begin of a cycle. */
+void lw_cam_queue(struct lw_controller *controller, const struct lw_cam_bank *bank);
 
 #endif /* LW_CONTROLLER_H */

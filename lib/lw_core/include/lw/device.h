@@ -23,14 +23,15 @@
 
 /** Sections of the bank that a device makes itself, and room for the host's. */
 enum {
-	LW_DEVICE_SECTIONS = 7,
+	LW_DEVICE_SECTIONS = 8,
 	LW_DEVICE_HOST_SECTIONS = 1,
 };
 
 /** Files of FC20 and FC21. */
 enum {
-	LW_DEVICE_FILES = 1,
 	LW_DEVICE_LOG_FILE = 1, /**< number of the event log: LW_LOG_RECORD_WORDS for each event */
+	LW_DEVICE_CAM_FILE = 2, /**< number of the first bank of cam tables (lw/cam_banks.h) */
+	LW_DEVICE_FILES = 1 + LW_CAM_BANKS,
 };
 
 /** What the host measures of itself; 0 where it cannot. */
@@ -96,6 +97,12 @@ struct lw_device_seen {
 	bool unlocked;  /**< the write lock was open */
 };
 
+/** A bank of cam tables as a file. */
+struct lw_device_cam_file {
+	struct lw_device *device;
+	struct lw_cam_bank *bank;
+};
+
 /** State. The host reads; everything is written by the functions here and by the slave. */
 struct lw_device {
 	struct lw_controller controller;
@@ -124,18 +131,28 @@ struct lw_device {
 	uint32_t powered_us;            /**< of the present second */
 	uint32_t tracking_us;           /**< of the present second */
 
+	int8_t cam_active;             /**< index of the store's bank that is in force, -1: none */
+	bool cam_stored;               /**< so is the table that the next power-up begins with */
+	uint16_t cam_first_row;        /**< where the window of rows begins, from 1 */
+	struct lw_cam_refusal cam_why; /**< why the last check of a table refused it */
+
 	uint64_t now_us;           /**< of the last tick */
 	uint64_t heard_request_us; /**< slave's time of the last request that was noticed */
 	uint64_t heard_us;         /**< when it was noticed, in ticks' time */
 
 	/* Images that a Modbus request reads. */
 	struct lw_setpoints setpoints_image;
-	struct lw_status status_image;
+	union {
+		/* No request reads input and holding registers. */
+		struct lw_status status_image;
+		struct lw_cam_upload cam_upload_image;
+	};
 	uint32_t coils_image;
 
 	const struct lw_device_config *config;
 	struct lw_bank_section sections[LW_DEVICE_SECTIONS + LW_DEVICE_HOST_SECTIONS];
 	struct lw_bank bank;
+	struct lw_device_cam_file cam_files[LW_CAM_BANKS];
 	struct lw_pdu_file files[LW_DEVICE_FILES];
 	struct lw_slave_config slave_config;
 };

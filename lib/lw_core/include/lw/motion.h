@@ -13,7 +13,7 @@
  * A drum edge costs little because all that is unusual leaves the short way by one comparison:
  * whoever asks for something writes 0 to `law.open_span`, and then every edge goes the long way,
  * lw_motion_long_edge(), which restores it when nothing is left to do. Nothing that asks may
- * interrupt the edge interrupts.
+ * interrupt the edge interrupts. Edges that a cam takes go the long way too.
  */
 #ifndef LW_MOTION_H
 #define LW_MOTION_H
@@ -22,6 +22,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "lw/cam_motion.h"
 #include "lw/law.h"
 
 /** Which edges move the carriage. */
@@ -53,7 +54,7 @@ enum lw_motion_side_bit {
 struct lw_motion {
 	struct lw_law law;
 	uint32_t steps;    /**< step pulses given */
-	int32_t last_step; /**< the last of them, +1 or -1; 0: none yet */
+	int32_t last_step; /**< direction of the last of them, +1 or -1; 0: none yet */
 	/** Odometer, net drum edges modulo 2^32. Written by who decodes, before the edge is taken:
 	 *  the encoder interrupt, or a counter in hardware. */
 	uint32_t edges;
@@ -75,6 +76,10 @@ struct lw_motion {
 	int64_t net_edges;      /**< odometer: all drum edges, at the last lw_motion_count() */
 	int64_t followed_edges; /**< those that moved the carriage, likewise */
 	int64_t pattern_begin;  /**< followed_edges at the last hand-over */
+
+	/** What moves the carriage instead of the law while it is on. The law's position follows
+	 *  it, and its short way stays closed. */
+	struct lw_cam_motion cam;
 };
 
 /** Direction of the carriage: that of the last step, 0 at the far point of a reversal. */
@@ -137,14 +142,14 @@ void lw_motion_block(struct lw_motion *motion, enum lw_motion_side_bit side, boo
  */
 bool lw_motion_take_turned(struct lw_motion *motion, enum lw_motion_side_bit side);
 
-/** Take a drum edge whatever there is to do. For lw_motion_edge(). */
+/** Take a drum edge whatever there is to do, as lw_motion_edge(). */
 int lw_motion_long_edge(struct lw_motion *motion, int dd);
 
 /**
  * Take one drum edge that `edges` has already counted. For the encoder interrupt.
  *
  * @param dd +1 or -1
- * @return the step to give: +1, 0 or -1
+ * @return the steps to give: +1, 0 or -1; up to LW_CAM_STEPS_PER_EDGE_MAX either way by a cam
  */
 LW_EDGE_INLINE int lw_motion_edge(struct lw_motion *motion, int dd)
 {
@@ -164,7 +169,7 @@ LW_EDGE_INLINE int lw_motion_edge(struct lw_motion *motion, int dd)
  * Count and take one drum edge. For the encoder interrupt.
  *
  * @param dd +1 or -1
- * @return the step to give: +1, 0 or -1
+ * @return as lw_motion_edge()
  */
 LW_EDGE_INLINE int lw_motion_encoder_edge(struct lw_motion *motion, int dd)
 {

@@ -1,7 +1,7 @@
 /**
  * @file
- * What the non-volatile storage holds, in slots: two for the parameters and two for the journal
- * (event log and counters). Not for interrupt context.
+ * What the non-volatile storage holds, in slots: two for the parameters, two for the journal
+ * (event log and counters) and two for cam tables. Not for interrupt context.
  *
  * A host only reads and writes whole slots. Here is decided what they mean: of each pair the newest
  * good record is used, and the slot that does not hold the newest intact one is written next. So a
@@ -16,6 +16,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "lw/cam_banks.h"
 #include "lw/log.h"
 #include "lw/map.h"
 #include "lw/param_record.h"
@@ -25,16 +26,21 @@
 enum {
 	LW_STORE_PARAMS = 0,  /**< first slot of the parameters */
 	LW_STORE_JOURNAL = 2, /**< first slot of the journal */
-	LW_STORE_SLOTS = 4,
+	LW_STORE_CAM = 4,     /**< first slot of the cam tables that were put in force */
+	LW_STORE_SLOTS = 6,
 };
 
 /** Bytes of the journal's record. */
 #define LW_STORE_JOURNAL_SIZE (LW_RECORD_OVERHEAD + 4 * 4 + LW_LOG_RECORDS * LW_LOG_RECORD_SIZE)
 
+/** Bytes of the longest cam table's record: the words of a bank, high byte first. */
+#define LW_STORE_CAM_SIZE (LW_RECORD_OVERHEAD + 2 * LW_CAM_WORDS)
+
 /** Bytes that a slot must hold. */
-#define LW_STORE_SLOT_SIZE                                                                         \
-	(LW_PARAM_RECORD_SIZE > LW_STORE_JOURNAL_SIZE ? LW_PARAM_RECORD_SIZE                       \
-						      : LW_STORE_JOURNAL_SIZE)
+#define LW_STORE_SLOT_SIZE LW_STORE_CAM_SIZE
+
+_Static_assert(LW_STORE_SLOT_SIZE >= LW_PARAM_RECORD_SIZE, "the parameters do not fit");
+_Static_assert(LW_STORE_SLOT_SIZE >= LW_STORE_JOURNAL_SIZE, "the journal does not fit");
 
 /** Counters that survive power-off, as far as they were stored. */
 struct lw_counters {
@@ -57,16 +63,21 @@ struct lw_store_pair {
 
 /** State. */
 struct lw_store {
-	struct lw_store_pair pairs[LW_STORE_SLOTS / 2]; /**< parameters, journal */
+	struct lw_store_pair pairs[LW_STORE_SLOTS / 2]; /**< parameters, journal, cam tables */
 	struct lw_params params;     /**< stored set; factory values if there is none */
 	struct lw_log log;           /**< live; stored with the next journal */
 	struct lw_counters counters; /**< live; stored with the next journal */
-	uint32_t log_stored;         /**< newest event that is stored */
+	/** Live. After lw_store_load() each holds what the slot of the same number has, and is
+	 *  empty or ready. */
+	struct lw_cam_bank cam_banks[LW_CAM_BANKS];
+	uint32_t log_stored; /**< newest event that is stored */
 
 	struct lw_params saving; /**< waits to be written, or is being written */
 	uint32_t log_writing;    /**< newest event of the journal being written */
 	bool params_wanted;
 	bool journal_wanted;
+	const struct lw_cam_bank
+		*cam_wanted; /**< bank to be stored, or NULL; cleared when written */
 	bool writing;
 	uint8_t writing_slot;
 };
@@ -88,11 +99,18 @@ bool lw_store_has_params(const struct lw_store *store);
 /** Ask for a parameter set to be stored. Not while lw_store_saving(). */
 void lw_store_save(struct lw_store *store, const struct lw_params *params);
 
+/** The bank that holds the newest stored cam table after lw_store_load(), or -1. */
+int lw_store_cam_bank(const struct lw_store *store);
+
+/** Ask for a bank to be stored. It is in force: nobody writes to it. */
+void lw_store_save_cam(struct lw_store *store, const struct lw_cam_bank *bank);
+
 /** True while a parameter set waits to be written or is being written. */
 bool lw_store_saving(const struct lw_store *store);
 
 /**
- * Begin the write that is due, if any: log and counters if `journal_wanted`, parameters first.
+ * Begin the write that is due, if any: parameters, then the cam table, then log and counters if
+ * `journal_wanted`.
  *
  * @param slot receives the slot to write
  * @param bytes receives what to write

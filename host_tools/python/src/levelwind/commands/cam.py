@@ -1,17 +1,20 @@
 """Commands about cam tables."""
 
-from dataclasses import asdict
+import struct
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
 
 from levelwind import cam_files, cam_levelwind, cam_report, planning
-from levelwind.cam import Cam, Limits, Scale, Table, check
-from levelwind.connection import Json
-from levelwind.errors import ToolError
-from levelwind.map_table import CamInterpolation
-from levelwind.output import print_json, print_table, warn
+from levelwind.cam import ROWS_MAX, Cam, Limits, Scale, Table, check, from_words, words
+from levelwind.connection import Json, with_device
+from levelwind.device import Device
+from levelwind.errors import RefusedError, ToolError
+from levelwind.map_table import POINTS, CamBankState, CamInterpolation, Command
+from levelwind.output import console, print_json, print_table, warn
+from levelwind.parameter_sets import read_sets
 from levelwind.points import parse_assignments
 
 app = typer.Typer(
@@ -42,8 +45,23 @@ StepRate = Annotated[
     int, typer.Option("--step-rate", help="Fastest step pulses, per second.", min=1)
 ]
 FRACTION_MAX = 10_000
-TOP_RATE = 60_000
-STEP_RATE = 200_000
+SCALE_PARAMETERS = (
+    "cam_master_edges",
+    "cam_master_units",
+    "cam_slave_usteps",
+    "cam_slave_units",
+    "cam_ramp_divisor",
+    "overspeed_trip_edges_per_s",
+    "cam_steps_per_s_max",
+)
+TOP_RATE = POINTS["overspeed_trip_edges_per_s"].default or 0
+STEP_RATE = POINTS["cam_steps_per_s_max"].default or 0
+
+# A bank as a file (lw/cam_banks.h).
+FIRST_BANK_FILE = 2
+HEAD_WORDS = 16
+ROW_WORDS = 4
+FILE_WORDS = 100  # in one request
 
 
 def _fraction(option: str, text: str) -> tuple[int, int]:
@@ -147,3 +165,112 @@ def replay(
     check(table, scale, Limits(1, 4))  # the machine's speed is not asked for
     result, trace, stride = Cam(table, scale).run(runs, trace_points)
     return asdict(result), trace.tolist(), stride
+
+
+Version = Annotated[int, typer.Option(help="Version of the table, for people.", min=0)]
+Name = Annotated[str, typer.Option(help="Name of the table; default: of the file.")]
+
+
+def _send(device: Device, table: Table) -> None:
+    """Write a table into the bank that is not in force, and have it checked."""
+    status = device.read_names("cam_bank_0_state", "cam_bank_1_state")
+    bank = 1 if status["cam_bank_0_state"] == CamBankState.ACTIVE else 0
+    data = words(table)
+    for at in range(0, len(data), FILE_WORDS):
+        part = data[at : at + FILE_WORDS]
+        device.write_file(FIRST_BANK_FILE + bank, at, struct.pack(f">{len(part)}H", *part))
+    _command(device, Command.CAM_CHECK)
+
+
+def _command(device: Device, command: Command) -> None:
+    """Give a command; a refusal names the row."""
+    try:
+        device.command(command)
+    except RefusedError as error:
+        row = device.value("cam_reason_row")
+        raise RefusedError(f"{f'Row {row}: ' if row else ''}{error}") from None
+
+
+def _table(
+    device: Device, file: Path, interpolation: str, advancing: bool, name: str, version: int
+) -> Table:
+    """The table of a file; warnings of what it asks of this machine. The controller checks it."""
+    table = replace(load(file, interpolation, advancing, name), version=version)
+    if len(table.rows) > ROWS_MAX:
+        raise ToolError(f"{file} has {len(table.rows)} rows, limit {ROWS_MAX}.")
+    active = read_sets(device, [POINTS[parameter] for parameter in SCALE_PARAMETERS])["active"]
+    numbers = [active[parameter] for parameter in SCALE_PARAMETERS]
+    result = cam_report.report(table, Scale(*numbers[:5]), Limits(*numbers[5:]))
+    for text in result.warnings:
+        warn(text)
+    return table
+
+
+@app.command()
+@with_device
+def upload(
+    device: Device,
+    file: File,
+    interpolation: Interpolation = "linear",
+    advancing: Advancing = False,
+    name: Name = "",
+    version: Version = 0,
+) -> None:
+    """Load a table into the bank that is not in force, and have it checked there."""
+    table = _table(device, file, interpolation, advancing, name, version)
+    _send(device, table)
+    console.print(f"{table.name}: {len(table.rows)} rows checked. `levelwind cam activate`.")
+
+
+@app.command()
+@with_device
+def activate(
+    device: Device,
+    file: Annotated[Path | None, typer.Argument(help="Upload this table first.")] = None,
+    interpolation: Interpolation = "linear",
+    advancing: Advancing = False,
+    name: Name = "",
+    version: Version = 0,
+) -> None:
+    """Put the checked table in force: at once, or at the end of the cycle if a cam is running."""
+    if file is not None:
+        _send(device, _table(device, file, interpolation, advancing, name, version))
+    _command(device, Command.CAM_ACTIVATE)
+    queued = device.value("cam_queued")
+    console.print("Queued for the end of the cycle." if queued else "In force.")
+
+
+@app.command()
+@with_device
+def discard(device: Device) -> None:
+    """Drop the queued table, or else the upload."""
+    _command(device, Command.CAM_DISCARD)
+    console.print("Discarded.")
+
+
+@app.command()
+@with_device
+def download(
+    device: Device,
+    file: Annotated[Path, typer.Argument(help="Table to write: .txt, .csv or .xlsx.")],
+    other: Annotated[bool, typer.Option("--next", help="The bank that is not in force.")] = False,
+) -> None:
+    """Write the table in force to a file."""
+    active = device.value("cam_bank_1_state") == CamBankState.ACTIVE
+    number = FIRST_BANK_FILE + (active != other)
+    head = device.read_file(number, 0, HEAD_WORDS)
+    count = min(struct.unpack(">16sIHH", head[:24])[3], ROWS_MAX)
+    total = HEAD_WORDS + ROW_WORDS * count
+    data = head
+    for at in range(HEAD_WORDS, total, FILE_WORDS):
+        data += device.read_file(number, at, min(FILE_WORDS, total - at))
+    table = from_words(struct.unpack(f">{len(data) // 2}H", data))
+    cam_files.write(
+        file,
+        table.rows,
+        [
+            f"{table.name}, version {table.version}, {table.interpolation.label}, "
+            f"advance {table.advance}"
+        ],
+    )
+    console.print(f"{table.name}, version {table.version}: {len(table.rows)} rows.")

@@ -1,0 +1,389 @@
+/* The carriage follows the drum by a cam: starts, what it does with switches, how it ends. */
+#include "cam_rig.h"
+
+static const struct lw_cam_row hill[] = {{0, 40}, {1000, 1540}, {3000, -460}, {4000, 40}};
+
+void setUp(void)
+{
+	rig_prepare(0);
+	power_up(NULL, 0);
+}
+
+void tearDown(void)
+{
+}
+
+/** Where hill has the slave. Its slopes are whole or halves, halves up. */
+static int32_t hill_at(int64_t master)
+{
+	const int32_t at = (int32_t)((master % 4000 + 4000) % 4000);
+
+	if (at < 1000) {
+		return 40 + (3 * at + 1) / 2;
+	}
+	return at < 3000 ? 1540 - (at - 1000) : -460 + (at - 2999) / 2;
+}
+
+static int32_t pos_usteps(void)
+{
+	return lw_law_pos_usteps(lw_motion_m(&rig.controller->motion));
+}
+
+static int64_t net_edges(void)
+{
+	return lw_motion_read(&rig.controller->motion).net_edges;
+}
+
+/** With hill in force, indexed, following the drum. */
+static void follow_hill(enum lw_cam_start start)
+{
+	put_in_force(CAM_TABLE(hill));
+	use_cam(start, LW_CAM_AXIS_CARRIAGE);
+	track();
+}
+
+static void assert_on_hill(int64_t phase)
+{
+	TEST_ASSERT_EQUAL_INT32(hill_at(net_edges() + phase), pos_usteps());
+	TEST_ASSERT_EQUAL_INT32(hill_at(net_edges() + phase), status()->cam_position_usteps);
+	TEST_ASSERT_INT32_WITHIN(1, rig_error_usteps(), 0);
+}
+
+static void test_absolute_begins_where_the_odometer_is(void)
+{
+	rig_turn(9234);
+	rig_rest();
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	/* It went there before it followed. */
+	TEST_ASSERT_INT32_WITHIN(4, hill_at(9234), pos_usteps());
+	TEST_ASSERT_EQUAL_INT32(0, status()->cam_cycles);
+	for (int64_t run = 777; run > -9000; run -= 1111) {
+		rig_drive(run);
+		rig_drive(2);
+		assert_on_hill(0);
+		TEST_ASSERT_EQUAL_INT64(0, status()->cam_waiting);
+	}
+	TEST_ASSERT_TRUE(flag(LW_FLAG_LAUNCH_PERMIT));
+}
+
+static void test_relative_begins_here(void)
+{
+	int32_t begin;
+
+	rig_turn(1234);
+	rig_rest();
+	put_in_force(CAM_TABLE(hill));
+	use_cam(LW_CAM_START_RELATIVE, LW_CAM_AXIS_CARRIAGE);
+	/* From the middle, so that nothing of it is beyond a flange. */
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_CENTRE));
+	command(LW_COMMAND_INDEX);
+	rig_run_to(LW_STATE_CENTRED);
+	begin = pos_usteps();
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_TRACK));
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_EQUAL_INT32(begin, pos_usteps());
+	for (int32_t run = 777; run > -9000; run -= 1111) {
+		rig_drive(run);
+		TEST_ASSERT_EQUAL_INT32(
+			begin + hill_at(lw_motion_read(&rig.controller->motion).pattern_edges) - 40,
+			pos_usteps());
+	}
+}
+
+static void test_next_cycle_waits_at_the_begin(void)
+{
+	for (int dd = -1; dd <= 1; dd += 2) {
+		setUp();
+		rig_turn(3000);
+		rig_rest();
+		follow_hill(LW_CAM_START_NEXT_CYCLE);
+		TEST_ASSERT_INT32_WITHIN(4, 40, pos_usteps());
+		TEST_ASSERT_EQUAL_INT32(1, status()->cam_waiting);
+		rig_drive(dd > 0 ? 999 : -3000);
+		TEST_ASSERT_EQUAL_INT32(40, pos_usteps());
+		TEST_ASSERT_EQUAL_INT32(1, status()->cam_waiting);
+		rig_drive(dd);
+		TEST_ASSERT_EQUAL_INT32(0, status()->cam_waiting);
+		rig_drive(dd * 4321);
+		assert_on_hill(0);
+	}
+}
+
+static void test_the_table_is_shown_while_it_runs(void)
+{
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	TEST_ASSERT_EQUAL_INT32(4, status()->cam_rows);
+	TEST_ASSERT_EQUAL_INT32(4000, status()->cam_cycle_edges);
+	TEST_ASSERT_EQUAL_INT32(-460, status()->cam_min_usteps);
+	TEST_ASSERT_EQUAL_INT32(1540, status()->cam_max_usteps);
+	TEST_ASSERT_EQUAL_INT32(1500, status()->cam_slope_max_permille);
+	rig_drive(2 * 4000 + 1500 - net_edges());
+	TEST_ASSERT_EQUAL_INT32(2, status()->cam_row);
+	TEST_ASSERT_EQUAL_INT32(2, status()->cam_cycles);
+	command(LW_COMMAND_STOP);
+	TEST_ASSERT_EQUAL_INT32(0, status()->cam_row);
+}
+
+static void test_the_phase_shifts_while_it_runs(void)
+{
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_CAM_PHASE_EDGES, 500));
+	TEST_ASSERT_EQUAL_INT32(500,
+				read_register(LW_SPACE_HOLDING, LW_ADDRESS_CAM_PHASE_EDGES + 1));
+	rig_drive(200);
+	TEST_ASSERT_TRUE(status()->cam_phase_in_force_edges <= 200);
+	rig_drive(1000);
+	TEST_ASSERT_EQUAL_INT32(500, status()->cam_phase_in_force_edges);
+	assert_on_hill(500);
+	/* The next hand-over begins with it. */
+	rig_rest();
+	command(LW_COMMAND_STOP);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_CENTRE));
+	rig_run_to(LW_STATE_CENTRED);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_TRACK));
+	rig_run_to(LW_STATE_TRACKING);
+	rig_drive(4);
+	TEST_ASSERT_EQUAL_INT32(500, status()->cam_phase_in_force_edges);
+	assert_on_hill(500);
+}
+
+static void test_the_phase_counts_at_the_start(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_CAM_PHASE_EDGES, -700));
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	TEST_ASSERT_EQUAL_INT32(-700, status()->cam_phase_in_force_edges);
+	rig_drive(4);
+	assert_on_hill(-700);
+}
+
+static void test_pulses_have_room_for_the_rate_that_the_drum_may_reach(void)
+{
+	const uint32_t top = lw_params_default.overspeed_trip_edges_per_s;
+	static const struct {
+		uint32_t rate; /* times the top edge rate, in halves */
+		int steps_max;
+	} cases[] = {{3, 2}, {4, 2}, {6, 3}, {8, 4}, {20, 4}};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		setUp();
+		TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_CAM_STEPS_PER_S_MAX,
+						    (int32_t)(top * cases[i].rate / 2)));
+		follow_hill(LW_CAM_START_ABSOLUTE);
+		TEST_ASSERT_EQUAL_INT(cases[i].steps_max, rig.controller->motion.cam.steps_max);
+	}
+	/* A flat table, and pulses slower than the edges: one at a time. */
+	setUp();
+	put_in_force((struct lw_cam_table){.row_count = 2, .rows = {{0, 9}, {1000, 9}}});
+	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_CAM_STEPS_PER_S_MAX, 1000));
+	use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
+	track();
+	TEST_ASSERT_EQUAL_INT(1, rig.controller->motion.cam.steps_max);
+	rig_drive(20);
+	TEST_ASSERT_EQUAL_INT32(9, pos_usteps());
+}
+
+static void test_without_a_table_there_is_no_permit(void)
+{
+	/* APPLY would not let it happen; a stored set can meet an empty bank. */
+	struct lw_params params = lw_params_default;
+	uint8_t record[LW_PARAM_RECORD_SIZE];
+
+	params.motion_profile = LW_MOTION_PROFILE_CAM;
+	(void)lw_param_record_encode(&params, 1, record);
+	power_up(record, sizeof(record));
+	command(LW_COMMAND_INDEX);
+	rig_run_to(LW_STATE_READY);
+	rig_ticks(1000);
+	TEST_ASSERT_EQUAL_INT32(LW_STATE_READY, status()->state);
+	TEST_ASSERT_EQUAL_INT32(LW_REASON_CAM_NO_TABLE, status()->cam_reason);
+	TEST_ASSERT_TRUE(status()->launch_inhibit >> LW_LAUNCH_INHIBIT_CAM & 1);
+	/* One that comes is followed. */
+	put_in_force(CAM_TABLE(hill));
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_EQUAL_INT32(LW_REASON_NONE, status()->cam_reason);
+	TEST_ASSERT_EQUAL_INT32(0, status()->launch_inhibit);
+	rig_drive(100);
+	assert_on_hill(0);
+}
+
+static void test_a_relative_start_beyond_a_flange_is_not_made(void)
+{
+	static const struct lw_cam_row rows[] = {{0, 0}, {20000, -900}, {40000, 0}};
+
+	put_in_force(CAM_TABLE(rows)); /* the indexing ends near the minus side */
+	use_cam(LW_CAM_START_RELATIVE, LW_CAM_AXIS_CARRIAGE);
+	command(LW_COMMAND_INDEX);
+	rig_run_to(LW_STATE_READY);
+	rig_ticks(500);
+	TEST_ASSERT_EQUAL_INT32(LW_STATE_READY, status()->state);
+	TEST_ASSERT_EQUAL_INT32(LW_REASON_CAM_BEYOND_FLANGE, status()->cam_reason);
+	TEST_ASSERT_EQUAL_INT32(2, status()->cam_reason_row);
+	TEST_ASSERT_TRUE(status()->launch_inhibit >> LW_LAUNCH_INHIBIT_CAM & 1);
+	TEST_ASSERT_EQUAL_INT(0,
+			      write_register(LW_ADDRESS_MOTION_PROFILE, LW_MOTION_PROFILE_SCREW));
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_FALSE(status()->launch_inhibit >> LW_LAUNCH_INHIBIT_CAM & 1);
+	/* From the middle it can be made. */
+	use_cam(LW_CAM_START_RELATIVE, LW_CAM_AXIS_CARRIAGE);
+	rig_ticks(1);
+	TEST_ASSERT_TRUE(status()->launch_inhibit >> LW_LAUNCH_INHIBIT_CAM & 1);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_CENTRE));
+	rig_run_to(LW_STATE_CENTRED);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_TRACK));
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_EQUAL_INT32(0, status()->launch_inhibit);
+}
+
+/** Between the switches, over both of them at the ends. */
+static const struct lw_cam_row wide[] = {{0, 0}, {8000, 7900}, {24000, -7900}, {32000, 0}};
+
+static void test_switches_in_their_places_are_no_loss(void)
+{
+	put_in_force(CAM_TABLE(wide));
+	use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
+	track();
+	rig_drive(70000);
+	rig_drive(-70000);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_LAUNCH_PERMIT));
+	TEST_ASSERT_FALSE(flag(LW_FLAG_LOS));
+	/* Nor is a turn before the switch. */
+	setUp();
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	rig_drive(70000);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_LOS));
+}
+
+static void test_a_switch_that_never_triggers_is_a_loss(void)
+{
+	static const struct lw_cam_row widest[] = {
+		{0, 0}, {9000, 8200}, {27000, -8200}, {36000, 0}};
+
+	for (int side = 0; side < 2; side++) {
+		setUp();
+		put_in_force(CAM_TABLE(widest));
+		use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
+		track();
+		rig_drive(80000);
+		rig_drive(-80000);
+		TEST_ASSERT_FALSE(flag(LW_FLAG_LOS));
+		rig_set_switch(side, RIG_SWITCH_NEVER);
+		rig_drive(80000);
+		TEST_ASSERT_TRUE(rig.controller->los1[side].set);
+		TEST_ASSERT_FALSE(rig.controller->los1[1 - side].set);
+		TEST_ASSERT_FALSE(rig.controller->los2[0].set || rig.controller->los2[1].set);
+		TEST_ASSERT_FALSE(flag(LW_FLAG_LAUNCH_PERMIT));
+	}
+}
+
+static void test_a_switch_elsewhere_is_a_loss_that_is_not_corrected(void)
+{
+	put_in_force(CAM_TABLE(wide));
+	use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
+	track();
+	rig.switch_at_usteps[LW_PLUS] -= 300;
+	rig_drive(40000);
+	TEST_ASSERT_TRUE(rig.controller->los2[LW_PLUS].set);
+	TEST_ASSERT_FALSE(rig.controller->los1[LW_PLUS].set || rig.controller->los1[LW_MINUS].set);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_LAUNCH_PERMIT));
+	TEST_ASSERT_EQUAL_INT32(LW_STATE_TRACKING, status()->state);
+	TEST_ASSERT_EQUAL_INT32(0, rig.controller->motion.corrected_usteps);
+	TEST_ASSERT_EQUAL_INT32(0, rig.controller->los_recoveries);
+	TEST_ASSERT_EQUAL_INT32(0, rig_error_usteps());
+}
+
+static void test_overtravel_blocks_and_stops(void)
+{
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	rig_drive(100);
+	lw_controller_overtravel(rig.controller, LW_PLUS, true);
+	const int32_t place = rig.carriage_usteps;
+
+	rig_turn(500); /* upward, before any tick */
+	TEST_ASSERT_EQUAL_INT32(place, rig.carriage_usteps);
+	rig_tick();
+	TEST_ASSERT_EQUAL_INT(LW_FAULT_OVERTRAVEL_PLUS, rig.controller->fault);
+	TEST_ASSERT_FALSE(rig.controller->motion.cam.on);
+}
+
+static void test_a_trim_does_not_move_it(void)
+{
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	rig_drive(700);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_PLUS_UM, -300));
+	rig_drive(5000);
+	assert_on_hill(0);
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+}
+
+static void test_back_to_the_screw(void)
+{
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	rig_drive(700);
+	rig_rest();
+	command(LW_COMMAND_STOP);
+	TEST_ASSERT_FALSE(rig.controller->on_orbit);
+	TEST_ASSERT_EQUAL_INT(0,
+			      write_register(LW_ADDRESS_MOTION_PROFILE, LW_MOTION_PROFILE_SCREW));
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_TRACK));
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_FALSE(rig.controller->motion.cam.on);
+	rig_drive(100000);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_LOS));
+	TEST_ASSERT_TRUE(rig.controller->motion.law.open_span != 0); /* the short way */
+}
+
+static void test_a_free_axis_is_geared_and_ends_at_0(void)
+{
+	static const struct lw_cam_row rows[] = {{0, 0}, {7, 3}};
+	struct lw_cam_table gear = CAM_TABLE(rows);
+
+	gear.advance = 3;
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_CAM_AXIS, LW_CAM_AXIS_FREE));
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_CAM_START, LW_CAM_START_RELATIVE));
+	command(LW_COMMAND_APPLY);
+	put_in_force(gear);
+	use_cam(LW_CAM_START_RELATIVE, LW_CAM_AXIS_FREE);
+	track();
+	rig.switch_at_usteps[LW_PLUS] = 100; /* means nothing */
+	rig_drive(70000);
+	TEST_ASSERT_EQUAL_INT32(30000, status()->cam_position_usteps);
+	TEST_ASSERT_EQUAL_INT32(10000, status()->cam_cycles);
+	rig_drive(-140000);
+	TEST_ASSERT_EQUAL_INT32(-30000, status()->cam_position_usteps);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_LOS));
+	rig_rest();
+	command(LW_COMMAND_STOP);
+	TEST_ASSERT_EQUAL_INT32(0, pos_usteps());
+}
+
+static void test_an_absolute_start_of_a_free_axis_is_refused(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_CAM_AXIS, LW_CAM_AXIS_FREE));
+	command(LW_COMMAND_APPLY);
+	assert_command(LW_COMMAND_APPLY, LW_RESULT_REFUSED, LW_REASON_CAM_FREE_AXIS);
+	TEST_ASSERT_EQUAL_INT32(LW_ADDRESS_CAM_START, status()->command_address);
+}
+
+int main(void)
+{
+	UNITY_BEGIN();
+	RUN_TEST(test_absolute_begins_where_the_odometer_is);
+	RUN_TEST(test_relative_begins_here);
+	RUN_TEST(test_next_cycle_waits_at_the_begin);
+	RUN_TEST(test_the_table_is_shown_while_it_runs);
+	RUN_TEST(test_the_phase_shifts_while_it_runs);
+	RUN_TEST(test_the_phase_counts_at_the_start);
+	RUN_TEST(test_pulses_have_room_for_the_rate_that_the_drum_may_reach);
+	RUN_TEST(test_without_a_table_there_is_no_permit);
+	RUN_TEST(test_a_relative_start_beyond_a_flange_is_not_made);
+	RUN_TEST(test_switches_in_their_places_are_no_loss);
+	RUN_TEST(test_a_switch_that_never_triggers_is_a_loss);
+	RUN_TEST(test_a_switch_elsewhere_is_a_loss_that_is_not_corrected);
+	RUN_TEST(test_overtravel_blocks_and_stops);
+	RUN_TEST(test_a_trim_does_not_move_it);
+	RUN_TEST(test_back_to_the_screw);
+	RUN_TEST(test_a_free_axis_is_geared_and_ends_at_0);
+	RUN_TEST(test_an_absolute_start_of_a_free_axis_is_refused);
+	return UNITY_END();
+}
