@@ -31,7 +31,7 @@ FASTER_THAN_REAL_TIME_MIN = 100
 POLLED_S = 10.0
 BEHIND_MAX_MS = 200  # from there on lw_sim gives lost time up
 LATENCY_READS = 2000
-LAW_CASES = ("sweep", "reversal", "direction_change")
+LAW_CASES = ("sweep", "reversal", "direction_change", "cam_linear", "cam_trapezoid")
 
 
 @dataclass

@@ -93,12 +93,15 @@ static void test_a_damaged_table_leaves_the_one_before(void)
 	power_cut();
 	assert_banks(LW_CAM_BANK_STATE_ACTIVE, LW_CAM_BANK_STATE_EMPTY);
 	TEST_ASSERT_EQUAL_INT64(7, status()->cam_version);
+	TEST_ASSERT_EQUAL_INT32(LW_SLOT_STATE_GOOD, status()->slot_4);
+	TEST_ASSERT_EQUAL_INT32(LW_SLOT_STATE_DAMAGED, status()->slot_5);
 	/* And none at all: there is nothing to follow, and it says so. */
 	slots[LW_STORE_CAM][50] ^= 8;
 	power_cut();
 	assert_banks(LW_CAM_BANK_STATE_EMPTY, LW_CAM_BANK_STATE_EMPTY);
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_rows);
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_stored);
+	TEST_ASSERT_EQUAL_INT32(LW_SLOT_STATE_DAMAGED, status()->slot_4);
 	TEST_ASSERT_EQUAL_UINT16(LW_EVENT_SLOT_DAMAGED,
 				 rig.store.log.records[rig.store.log.newest - 1].event);
 	TEST_ASSERT_EQUAL_INT32(LW_STORE_CAM + 1,

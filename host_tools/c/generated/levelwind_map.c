@@ -1450,6 +1450,18 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 1, .offset = offsetof(struct levelwind_status, cam_waiting),
 	},
 	{
+		.name = "slot_4", .unit = "", .text = "Storage: first slot of cam tables",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 627,
+		.words = 1, .offset = offsetof(struct levelwind_status, slot_4),
+		.values = slot_state_values, .value_count = 6,
+	},
+	{
+		.name = "slot_5", .unit = "", .text = "Storage: second slot of cam tables",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 628,
+		.words = 1, .offset = offsetof(struct levelwind_status, slot_5),
+		.values = slot_state_values, .value_count = 6,
+	},
+	{
 		.name = "cam_upload_name", .unit = "",
 		.text = "Name, two characters of ASCII in a register",
 		.block = LEVELWIND_BLOCK_CAM_UPLOAD, .type = LEVELWIND_TYPE_U16, .address = 3000,

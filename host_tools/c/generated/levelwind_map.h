@@ -739,6 +739,8 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_CAM_CYCLES                    622
 #define LEVELWIND_ADDRESS_CAM_PHASE_IN_FORCE_EDGES      624
 #define LEVELWIND_ADDRESS_CAM_WAITING                   626
+#define LEVELWIND_ADDRESS_SLOT_4                        627
+#define LEVELWIND_ADDRESS_SLOT_5                        628
 #define LEVELWIND_ADDRESS_CAM_UPLOAD_NAME               3000
 #define LEVELWIND_ADDRESS_CAM_UPLOAD_VERSION            3008
 #define LEVELWIND_ADDRESS_CAM_UPLOAD_INTERPOLATION      3010
@@ -983,6 +985,10 @@ struct levelwind_status {
 	int32_t cam_phase_in_force_edges;
 	/** 1 while a cam waits for the begin of the next cycle */
 	int32_t cam_waiting;
+	/** Storage: first slot of cam tables (enum levelwind_slot_state) */
+	int32_t slot_4;
+	/** Storage: second slot of cam tables (enum levelwind_slot_state) */
+	int32_t slot_5;
 };
 
 /** One value of an enumeration, or one bit number of a bit field */
@@ -1020,7 +1026,7 @@ struct levelwind_point {
 	size_t value_count;
 };
 
-#define LEVELWIND_POINT_COUNT 184
+#define LEVELWIND_POINT_COUNT 186
 
 /** All points, by block and rising address */
 extern const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT];

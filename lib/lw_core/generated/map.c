@@ -794,6 +794,14 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 		.address = 626, .count = 1, .offset = offsetof(struct lw_status, cam_waiting),
 		.type = LW_TYPE_U16,
 	},
+	{
+		.address = 627, .count = 1, .offset = offsetof(struct lw_status, slot_4),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 628, .count = 1, .offset = offsetof(struct lw_status, slot_5),
+		.type = LW_TYPE_U16,
+	},
 };
 
 const struct lw_point lw_map_cam_upload[LW_MAP_CAM_UPLOAD_COUNT] = {

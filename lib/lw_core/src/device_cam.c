@@ -388,6 +388,7 @@ void lw_device_cam_status(const struct lw_device *device, struct lw_status *stat
 {
 	const struct lw_controller *controller = &device->controller;
 	const struct lw_cam_motion *cam = &controller->motion.cam;
+	const enum lw_slot_state *slots = device->config->store->pairs[LW_STORE_CAM / 2].state;
 	const struct lw_cam_refusal *why =
 		controller->cam_refusal.reason ? &controller->cam_refusal : &device->cam_why;
 
@@ -397,6 +398,8 @@ void lw_device_cam_status(const struct lw_device *device, struct lw_status *stat
 	status->cam_reason_row = why->row;
 	status->cam_reason_value = why->value;
 	status->cam_reason_limit = why->limit;
+	status->slot_4 = (int32_t)slots[0];
+	status->slot_5 = (int32_t)slots[1];
 	if (device->cam_active >= 0) {
 		const struct lw_cam_bank *bank = active_bank(device);
 

@@ -902,6 +902,8 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_CAM_CYCLES                  622
 #define LW_ADDRESS_CAM_PHASE_IN_FORCE_EDGES    624
 #define LW_ADDRESS_CAM_WAITING                 626
+#define LW_ADDRESS_SLOT_4                      627
+#define LW_ADDRESS_SLOT_5                      628
 
 /* Block cam_upload: holding registers. */
 #define LW_ADDRESS_CAM_UPLOAD_NAME          3000
@@ -1345,6 +1347,10 @@ struct lw_status {
 	int32_t cam_phase_in_force_edges;
 	/** 1 while a cam waits for the begin of the next cycle */
 	int32_t cam_waiting;
+	/** Storage: first slot of cam tables (enum lw_slot_state) */
+	int32_t slot_4;
+	/** Storage: second slot of cam tables (enum lw_slot_state) */
+	int32_t slot_5;
 };
 
 /**
@@ -1459,7 +1465,7 @@ extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
  */
 extern const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT];
 
-#define LW_MAP_STATUS_COUNT 106
+#define LW_MAP_STATUS_COUNT 108
 
 /**
  * Identity, live status, LOS records, counters, command results and derived values: input

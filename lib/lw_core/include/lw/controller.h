@@ -53,9 +53,9 @@ struct lw_controller {
 	const struct lw_params *params;   /**< active set */
 	const struct lw_derived *derived; /**< what follows from it */
 
+	struct lw_quadrature quadrature;       /**< written by the encoder interrupt */
 	struct lw_motion motion;               /**< see lw/motion.h */
 	struct lw_law_window windows[2];       /**< one in force, one to prepare the next */
-	struct lw_quadrature quadrature;       /**< written by the encoder interrupt */
 	struct lw_encoder_index encoder_index; /**< see lw/encoder_index.h */
 	struct lw_limit_switch limit[2]; /**< written by the limit-switch interrupts and ticks */
 	struct lw_limit_switch_config limit_config;
