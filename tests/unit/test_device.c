@@ -463,6 +463,72 @@ static void test_the_odometer_saturates(void)
 	TEST_ASSERT_EQUAL_INT32(-2400, status()->rope_mm);
 }
 
+/** Bytes of the memory that a table is about. */
+static size_t image_size(const struct lw_point *points)
+{
+	return points == lw_map_coils || points == lw_map_discretes ? sizeof(uint32_t)
+	       : points == lw_map_setpoints                         ? sizeof(struct lw_setpoints)
+	       : points == lw_map_params                            ? sizeof(struct lw_params)
+	       : points == lw_map_status                            ? sizeof(struct lw_status)
+	       : points == lw_map_cam_upload                        ? sizeof(struct lw_cam_upload)
+	       : points == lw_map_bench                             ? sizeof(struct lw_bench)
+								    : 0;
+}
+
+static void check_point(const struct lw_bank_section *section, const struct lw_point *point)
+{
+	const size_t size = point->type == LW_TYPE_I64 ? sizeof(int64_t) : sizeof(int32_t);
+
+	TEST_ASSERT_GREATER_THAN_UINT(0, point->count);
+	TEST_ASSERT_EQUAL(section->space == LW_SPACE_COIL || section->space == LW_SPACE_DISCRETE,
+			  point->type == LW_TYPE_BIT);
+	if (point->type == LW_TYPE_BIT) {
+		TEST_ASSERT_LESS_OR_EQUAL_UINT(32, point->offset + point->count);
+	} else {
+		TEST_ASSERT_TRUE(point->offset + size * point->count <=
+				 image_size(section->points));
+	}
+}
+
+/* What the proof of the bank (tests/proofs/bank.c) takes for granted. */
+static void test_the_sections_are_as_the_bank_needs_them(void)
+{
+	static bool taken[LW_SPACE_INPUT + 1][UINT16_MAX + 1];
+	struct lw_bank_section sections[LW_DEVICE_SECTIONS + 1];
+
+	memset(taken, 0, sizeof(taken));
+	TEST_ASSERT_EQUAL_UINT(LW_DEVICE_SECTIONS, rig.device.bank.section_count);
+	memcpy(sections, rig.device.bank.sections, LW_DEVICE_SECTIONS * sizeof(sections[0]));
+	sections[LW_DEVICE_SECTIONS] = (struct lw_bank_section){
+		.space = LW_SPACE_HOLDING,
+		.points = lw_map_bench,
+		.point_count = LW_MAP_BENCH_COUNT,
+	};
+	for (size_t i = 0; i < LW_DEVICE_SECTIONS + 1; i++) {
+		const struct lw_bank_section *section = &sections[i];
+		uint32_t next = 0;
+
+		TEST_ASSERT_TRUE(image_size(section->points) > 0);
+		for (const struct lw_point *point = section->points;
+		     point < section->points + section->point_count; point++) {
+			const uint32_t first = (uint32_t)point->address + section->address_offset;
+			const uint32_t width =
+				point->type == LW_TYPE_I64                                 ? 4u
+				: point->type == LW_TYPE_U32 || point->type == LW_TYPE_I32 ? 2u
+											   : 1u;
+
+			check_point(section, point);
+			TEST_ASSERT_TRUE(first >= next);
+			next = first + point->count * width;
+			TEST_ASSERT_LESS_OR_EQUAL_UINT32(UINT16_MAX + 1u, next);
+			for (uint32_t address = first; address < next; address++) {
+				TEST_ASSERT_FALSE(taken[section->space][address]);
+				taken[section->space][address] = true;
+			}
+		}
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -487,5 +553,6 @@ int main(void)
 	RUN_TEST(test_master_lost);
 	RUN_TEST(test_status_while_tracking);
 	RUN_TEST(test_the_odometer_saturates);
+	RUN_TEST(test_the_sections_are_as_the_bank_needs_them);
 	return UNITY_END();
 }

@@ -34,6 +34,7 @@ static struct lw_bank_section sections[] = {
 	SECTION(LW_SPACE_HOLDING, setpoints, 0),
 	SECTION(LW_SPACE_HOLDING, params, 0),
 	SECTION(LW_SPACE_HOLDING, bench, 0),
+	SECTION(LW_SPACE_HOLDING, cam_upload, 0),
 	SECTION(LW_SPACE_INPUT, status, 0),
 	SECTION(LW_SPACE_INPUT, params, LW_MAP_ACTIVE_ADDRESS_OFFSET),
 	SECTION(LW_SPACE_INPUT, params, LW_MAP_STORED_ADDRESS_OFFSET),
@@ -46,8 +47,8 @@ static const struct lw_bank bank = {sections, SECTION_COUNT};
 /** Bytes behind each section, to the byte: the sanitizer watches their end. */
 static const size_t image_sizes[SECTION_COUNT] = {
 	sizeof(uint32_t),         sizeof(uint32_t),         sizeof(struct lw_setpoints),
-	sizeof(struct lw_params), sizeof(struct lw_bench),  sizeof(struct lw_status),
-	sizeof(struct lw_params), sizeof(struct lw_params),
+	sizeof(struct lw_params), sizeof(struct lw_bench),  sizeof(struct lw_cam_upload),
+	sizeof(struct lw_status), sizeof(struct lw_params), sizeof(struct lw_params),
 };
 
 /** What the tables say of an address, read off them in the plainest way. */

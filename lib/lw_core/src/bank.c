@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "big_endian.h"
 #include "lw/map.h"
 
 /** Where in the bank an address lies. */
@@ -37,6 +38,14 @@ static const struct lw_point *point_before(const struct lw_bank_section *section
 	size_t low = 0;
 	size_t high = section->point_count;
 
+	/*@
+	  loop invariant 0 <= low <= high <= section->point_count;
+	  loop invariant \forall integer k; 0 <= k < low ==> begin(section, k) <= address;
+	  loop invariant \forall integer k;
+	    high <= k < section->point_count ==> begin(section, k) > address;
+	  loop assigns low, high;
+	  loop variant high - low;
+	*/
 	while (low < high) {
 		size_t middle = low + (high - low) / 2;
 
@@ -50,35 +59,45 @@ static const struct lw_point *point_before(const struct lw_bank_section *section
 	return low == 0 ? NULL : &section->points[low - 1];
 }
 
-static bool find(const struct lw_bank *bank, enum lw_space space, uint32_t address,
-		 struct place *place)
+/* Where an address lies in a section; the point is NULL if it does not. */
+static struct place find_in(const struct lw_bank_section *section, uint32_t address)
 {
-	for (size_t i = 0; i < bank->section_count; i++) {
-		const struct lw_bank_section *section = &bank->sections[i];
-		const struct lw_point *point = NULL;
-		uint32_t distance;
-		uint16_t part_count;
+	struct place place = {.section = section, .point = point_before(section, address)};
+	uint32_t distance;
 
-		if (section->space == space) {
-			point = point_before(section, address);
-		}
-		if (point == NULL) {
-			continue;
-		}
-		distance = address - point->address - section->address_offset;
-		part_count = registers_of(point);
-		if (distance < (uint32_t)point->count * part_count) {
-			*place = (struct place){
-				.section = section,
-				.point = point,
-				.element = (uint16_t)(distance / part_count),
-				.part = (uint16_t)(distance % part_count),
-				.part_count = part_count,
-			};
-			return true;
+	if (place.point != NULL) {
+		distance = address - place.point->address - section->address_offset;
+		place.part_count = registers_of(place.point);
+		//@ assert place.part_count == 1 || place.part_count == 2 || place.part_count == 4;
+		place.element = (uint16_t)(distance / place.part_count);
+		place.part = (uint16_t)(distance % place.part_count);
+		if (distance >= (uint32_t)place.point->count * place.part_count) {
+			place.point = NULL;
 		}
 	}
-	return false;
+	return place;
+}
+
+/* Where an address lies in the bank; the point is NULL if it does not. */
+static struct place find(const struct lw_bank *bank, enum lw_space space, uint32_t address)
+{
+	struct place place = {0};
+
+	/*@
+	  loop invariant 0 <= i <= bank->section_count;
+	  loop invariant place.point == \null ==> !(0 <= section_at(space, address) < i);
+	  loop invariant place.point != \null ==> found(space, address, place.section,
+	    place.point, place.element) && place.part < place.part_count <= 4;
+	  loop assigns i, place;
+	  loop variant bank->section_count - i;
+	*/
+	for (size_t i = 0; i < bank->section_count && place.point == NULL; i++) {
+		if (bank->sections[i].space == space) {
+			//@ assert reads_as(i, &bank->sections[i]);
+			place = find_in(&bank->sections[i], address);
+		}
+	}
+	return place;
 }
 
 static int refuse(struct lw_refusal *why, int error, enum lw_reason reason, uint32_t address)
@@ -99,14 +118,19 @@ static int refuse_value(struct lw_refusal *why, enum lw_reason reason, uint32_t 
 static int check_known(const struct lw_bank *bank, enum lw_space space, uint16_t address,
 		       uint16_t count, struct lw_refusal *why)
 {
-	struct place place;
 	uint32_t end = (uint32_t)address + count;
 
+	/*@
+	  loop invariant address <= i <= end && i <= UINT16_MAX + 1;
+	  loop invariant all_known(space, address, i);
+	  loop assigns i;
+	  loop variant end - i;
+	*/
 	for (uint32_t i = address; i < end; i++) {
 		if (i > UINT16_MAX) {
 			return refuse(why, -ENXIO, LW_REASON_UNKNOWN_ADDRESS, LW_NO_ADDRESS);
 		}
-		if (!find(bank, space, i, &place)) {
+		if (find(bank, space, i).point == NULL) {
 			return refuse(why, -ENXIO, LW_REASON_UNKNOWN_ADDRESS, i);
 		}
 	}
@@ -120,20 +144,25 @@ static bool is_secret_mark(const struct lw_point *point, int64_t value)
 }
 
 /* One element from memory, sign-extended. The tables say where it is and how wide. */
-static uint64_t load(const void *image, const struct place *place)
+static uint64_t load(const void *image, const struct lw_point *point, uint16_t element)
 {
-	const uint8_t *at = (const uint8_t *)image + place->point->offset;
+	const char *at = image;
 	int32_t narrow;
 	int64_t wide;
 
-	if (place->point->type == LW_TYPE_I64) {
-		memcpy(&wide, at + place->element * sizeof(wide), sizeof(wide));
+	if (point->type == LW_TYPE_BIT) {
+		memcpy(&narrow, at, sizeof(narrow));
+		return ((uint32_t)narrow >> (point->offset + element)) & 1u;
+	}
+	at += point->offset;
+	if (point->type == LW_TYPE_I64) {
+		memcpy(&wide, at + element * sizeof(wide), sizeof(wide));
 	} else {
-		memcpy(&narrow, at + place->element * sizeof(narrow), sizeof(narrow));
+		memcpy(&narrow, at + element * sizeof(narrow), sizeof(narrow));
 		wide = narrow;
 	}
-	if ((place->point->flags & LW_POINT_SECRET) && wide != 0) {
-		wide = place->point->max;
+	if ((point->flags & LW_POINT_SECRET) && wide != 0) {
+		wide = point->max;
 	}
 	return (uint64_t)wide;
 }
@@ -146,19 +175,25 @@ int lw_bank_read_registers(const struct lw_bank *bank, enum lw_space space, uint
 	struct place place;
 	int error = check_known(bank, space, address, count, why);
 
+	/*@
+	  loop invariant 0 <= i <= count && (error == 0 ==> tables_ok(bank));
+	  loop invariant section == \null || image_ok(section, image);
+	  loop assigns i, place, section, image, out[0 .. 2 * count - 1], owner;
+	  loop variant count - i;
+	*/
 	for (uint16_t i = 0; error == 0 && i < count; i++) {
 		unsigned int shift;
 		uint64_t value;
 
-		find(bank, space, (uint32_t)address + i, &place);
+		place = find(bank, space, (uint32_t)address + i);
 		if (place.section != section) {
 			section = place.section;
+			//@ calls owner_image;
 			image = section->image(section->context);
 		}
 		shift = 16u * (place.part_count - 1u - place.part);
-		value = load(image, &place) >> shift;
-		out[2 * i] = (uint8_t)(value >> 8);
-		out[2 * i + 1] = (uint8_t)value;
+		value = load(image, place.point, place.element) >> shift;
+		lw_put16(&out[2 * i], (uint16_t)value);
 	}
 	return error;
 }
@@ -167,7 +202,7 @@ int lw_bank_read_bits(const struct lw_bank *bank, enum lw_space space, uint16_t 
 		      uint16_t count, uint8_t *out, struct lw_refusal *why)
 {
 	const struct lw_bank_section *section = NULL;
-	const uint32_t *bits = NULL;
+	const void *image = NULL;
 	struct place place;
 	int error = check_known(bank, space, address, count, why);
 
@@ -175,13 +210,20 @@ int lw_bank_read_bits(const struct lw_bank *bank, enum lw_space space, uint16_t 
 		return error;
 	}
 	memset(out, 0, (count + 7u) / 8u);
+	/*@
+	  loop invariant 0 <= i <= count && tables_ok(bank);
+	  loop invariant section == \null || image_ok(section, image);
+	  loop assigns i, place, section, image, out[0 .. (count + 7) / 8 - 1], owner;
+	  loop variant count - i;
+	*/
 	for (uint16_t i = 0; i < count; i++) {
-		find(bank, space, (uint32_t)address + i, &place);
+		place = find(bank, space, (uint32_t)address + i);
 		if (place.section != section) {
 			section = place.section;
-			bits = section->image(section->context);
+			//@ calls owner_image;
+			image = section->image(section->context);
 		}
-		if ((*bits >> (place.point->offset + place.element)) & 1u) {
+		if (load(image, place.point, place.element)) {
 			out[i / 8] |= (uint8_t)(1u << (i % 8));
 		}
 	}
@@ -208,7 +250,7 @@ static int walk(struct request *request, stage_function stage)
 	int error = 0;
 
 	for (uint32_t i = request->address; error == 0 && i < end; i += place.part_count) {
-		find(request->bank, request->space, i, &place);
+		place = find(request->bank, request->space, i);
 		error = stage(request, &place, i);
 	}
 	return error;
@@ -259,6 +301,11 @@ bool lw_point_allows(const struct lw_point *point, int64_t value, int32_t *limit
 		*limit = value < point->min ? point->min : point->max;
 		return value >= point->min && value <= point->max;
 	}
+	/*@
+	  loop invariant 0 <= i <= point->allowed_count && smallest >= 0;
+	  loop assigns i, smallest, *limit;
+	  loop variant point->allowed_count - i;
+	*/
 	for (uint8_t i = 0; i < point->allowed_count; i++) {
 		int64_t difference = value - point->allowed[i];
 		int64_t distance = difference < 0 ? -difference : difference;
