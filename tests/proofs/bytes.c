@@ -20,6 +20,13 @@
 */
 int compare_bytes(const uint8_t *a, const char *b, size_t count);
 
+/*@
+  requires \valid(to + (0 .. count - 1)) && \valid_read(from + (0 .. count - 1));
+  requires \separated(to + (0 .. count - 1), from + (0 .. count - 1));
+  assigns to[0 .. count - 1];
+*/
+void copy_bytes(uint8_t *to, const uint8_t *from, size_t count);
+
 #define memcmp compare_bytes
 #define memcpy copy_bytes
 
