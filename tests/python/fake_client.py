@@ -18,6 +18,7 @@ class FakeClient:
         self.registers: dict[tuple[str, int], int] = {}
         self.writes: list[tuple[int, list[int]]] = []
         self.silent_reads = 0
+        self.foreign_answers = 0  # to another master's requests
         self.result = Result.DONE
         self.reason = Reason.NONE
 
@@ -36,8 +37,17 @@ class FakeClient:
         if self.silent_reads:
             self.silent_reads -= 1
             raise ModbusIOException("no answer")
+        function = 4 if space == "input" else 3
+        if self.foreign_answers:
+            self.foreign_answers -= 1
+            foreign = self.foreign_answers % 2
+            return SimpleNamespace(
+                function_code=function ^ 7 if foreign else function,
+                registers=[1] * (count if foreign else count + 1),
+                isError=lambda: False,
+            )
         words = [self.registers.get((space, address + i), 0) for i in range(count)]
-        return SimpleNamespace(registers=words, isError=lambda: False)
+        return SimpleNamespace(function_code=function, registers=words, isError=lambda: False)
 
     def read_input_registers(self, address: int, count: int, device_id: int) -> Any:
         return self._read("input", address, count)
@@ -57,7 +67,7 @@ class FakeClient:
             self.put("last_error_address", address)
             self.put("last_error_value", OVERFLOW)
             self.put("last_error_limit", 100_000)
-            return SimpleNamespace(isError=lambda: True, exception_code=3)
+            return SimpleNamespace(function_code=0x90, isError=lambda: True, exception_code=3)
         for i, word in enumerate(values):
             self.registers["holding", address + i] = word
         if address == POINTS["command"].address:
@@ -66,4 +76,6 @@ class FakeClient:
             self.put("command_code", values[0])
             self.put("command_result", self.result)
             self.put("command_reason", self.reason)
-        return SimpleNamespace(isError=lambda: False)
+        return SimpleNamespace(
+            function_code=16, address=address, count=len(values), isError=lambda: False
+        )

@@ -51,6 +51,15 @@ def test_a_lost_read_is_repeated_and_silence_is_told(device: Device):
     assert len(str(silence.value).splitlines()) == 2
 
 
+def test_an_answer_to_somebody_else_is_not_taken(device: Device, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(device_module, "SETTLE_S", 0)
+    device._client.foreign_answers = 2  # one of another length, one of another function
+    assert device.value("pitch_um") == 0
+    device._client.foreign_answers = 3
+    with pytest.raises(ToolError, match="second master"):
+        device.value("pitch_um")
+
+
 def test_a_vanished_port_is_told(device: Device):
     device._client.silent_reads = 1
     device._client.connected = False

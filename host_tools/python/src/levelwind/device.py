@@ -129,6 +129,9 @@ class Device:
         wanted = FileRecord(file_number=number, record_number=first, record_length=2 * count)
         answer = self._request(
             lambda: self._client.read_file_record([wanted], device_id=self.line.unit),
+            _answers(
+                20, lambda answer: [len(r.record_data) for r in answer.records] == [2 * count]
+            ),
             READ_ATTEMPTS,
         )
         return answer.records[0].record_data
@@ -142,7 +145,7 @@ class Device:
             lambda: self._client.write_file_record(
                 [records], device_id=self.line.unit, no_response_expected=False
             ),
-            attempts=1,
+            _answers(21, lambda answer: [r.record_data for r in answer.records] == [data]),
         )
 
     def write(self, values: Mapping[str, int]) -> None:
@@ -167,7 +170,9 @@ class Device:
             lambda: self._client.write_registers(
                 address, registers, device_id=self.line.unit, no_response_expected=False
             ),
-            attempts=1,
+            _answers(
+                16, lambda answer: (answer.address, answer.count) == (address, len(registers))
+            ),
         )
 
     def _write_group(self, points: Iterable[Point], values: Mapping[str, int]) -> None:
@@ -219,23 +224,35 @@ class Device:
 
     def _read_request(self, space: str, address: int, count: int) -> Any:
         client = self._client
-        function = {
-            "coil": client.read_coils,
-            "discrete": client.read_discrete_inputs,
-            "holding": client.read_holding_registers,
-            "input": client.read_input_registers,
+        code, function = {
+            "coil": (1, client.read_coils),
+            "discrete": (2, client.read_discrete_inputs),
+            "holding": (3, client.read_holding_registers),
+            "input": (4, client.read_input_registers),
         }[space]
+        if space in ("coil", "discrete"):
+            fits = _answers(code, lambda answer: len(answer.bits) == -(-count // 8) * 8)
+        else:
+            fits = _answers(code, lambda answer: len(answer.registers) == count)
         return self._request(
-            lambda: function(address, count=count, device_id=self.line.unit), READ_ATTEMPTS
+            lambda: function(address, count=count, device_id=self.line.unit), fits, READ_ATTEMPTS
         )
 
-    def _request(self, send: Callable[[], ModbusPDU], attempts: int) -> ModbusPDU:
-        answer = self._send(send, attempts)
+    def _request(
+        self,
+        send: Callable[[], ModbusPDU],
+        fits: Callable[[Any], bool],
+        attempts: int = 1,
+    ) -> Any:
+        answer = self._send(send, fits, attempts)
         if answer.isError():
             raise self._explain(answer)
         return answer
 
-    def _send(self, send: Callable[[], ModbusPDU], attempts: int) -> ModbusPDU:
+    def _send(
+        self, send: Callable[[], ModbusPDU], fits: Callable[[Any], bool], attempts: int
+    ) -> Any:
+        foreign = False
         for _ in range(attempts):
             began = time.monotonic()
             try:
@@ -250,9 +267,18 @@ class Device:
             except KeyboardInterrupt:
                 time.sleep(SETTLE_S)  # let the answer under way go by
                 raise
+            foreign = not fits(answer)
+            if foreign:
+                time.sleep(SETTLE_S)  # let ours go by; pymodbus drops what came before it asks
+                continue
             self.requests += 1
             self.worst_latency_s = max(self.worst_latency_s, time.monotonic() - began)
             return answer
+        if foreign:
+            raise ToolError(
+                f"{self.line} answers something else than was asked.\n"
+                "Is a second master on the line, or another program at the port?"
+            )
         raise ToolError(
             f"No answer from {self.line} within {self.line.timeout_s:g} s.\n"
             "Check power and wiring (A/B swapped?), the unit id (--unit), --baud and --line."
@@ -267,6 +293,7 @@ class Device:
             lambda: self._client.read_input_registers(
                 run.address, count=run.count, device_id=self.line.unit
             ),
+            _answers(4, lambda answer: len(answer.registers) == run.count),
             READ_ATTEMPTS,
         )
         if details.isError():
@@ -283,6 +310,13 @@ class Device:
         if code == ILLEGAL_ADDRESS:
             why += f" (function {error['function']}, address {error['address']})"
         return RefusedError(f"{name}: {why}")
+
+
+def _answers(function: int, fits: Callable[[Any], bool]) -> Callable[[Any], bool]:
+    """Is it the answer, or the exception, to a request of this function that it must fit?"""
+    return lambda answer: (
+        answer.function_code & 0x7F == function and (answer.isError() or fits(answer))
+    )
 
 
 def is_pseudo_terminal(port: str) -> bool:
