@@ -340,7 +340,8 @@ int levelwind_read_status(struct levelwind_client *client, struct levelwind_stat
 	size_t index = first_status_index();
 	int error = 0;
 
-	while (error == 0 && index < LEVELWIND_POINT_COUNT) {
+	while (error == 0 && index < LEVELWIND_POINT_COUNT &&
+	       levelwind_points[index].block == LEVELWIND_BLOCK_STATUS) {
 		error = read_status_run(client, &index, status);
 	}
 	return error;
