@@ -53,7 +53,7 @@ def test_the_note_as_it_is_printed(note: Path):
 @pytest.mark.parametrize("suffix", [".txt", ".csv", ".xlsx"])
 def test_what_is_written_reads_back(tmp_path: Path, suffix: str):
     rows = ((0, -5), (10, 2**31 - 1), (2**31 - 1, -(2**31)))
-    path = tmp_path / f"folder/table{suffix}"
+    path = tmp_path / f"table{suffix}"
     cam_files.write(path, rows, ["a comment, with 2 numbers: 3"])
     assert cam_files.read(path) == rows
 

@@ -1,5 +1,8 @@
 """Values of the map: names, limits, registers."""
 
+import re
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -20,6 +23,14 @@ from levelwind.points import (
     runs,
 )
 
+PAGE = Path(__file__).parents[2] / "doc" / "integration.md"
+SPACES = {
+    "input registers": "input",
+    "holding registers": "holding",
+    "discrete inputs": "discrete",
+    "coils": "coil",
+}
+BENCH = 0xF000  # from here on the simulated machine's
 WRITABLE = [p for p in POINTS.values() if p.space == "holding" and p.writable]
 
 
@@ -99,3 +110,12 @@ def test_refusals_name_value_and_limit_only_where_one_is_to_blame():
     assert refusal_text(Reason.BUSY_TRACKING, 114, 9, 0) == Reason.BUSY_TRACKING.text
     assert refusal_text(Reason.OUT_OF_RANGE, NO_ADDRESS, 0, 0) == Reason.OUT_OF_RANGE.text
     assert "newer than this tool" in refusal_text(999, NO_ADDRESS, 0, 0)
+
+
+@pytest.mark.parametrize("title", SPACES)
+def test_the_integrators_page_has_the_runs_without_holes(title: str):
+    line = re.search(rf"^\| {title} \| (.*)$", PAGE.read_text(), re.M)
+    assert line
+    told = [tuple(map(int, pair)) for pair in re.findall(r"(\d+), (\d+)", line[1])]
+    points = [p for p in POINTS.values() if p.space == SPACES[title] and p.address < BENCH]
+    assert told == [(run.address, run.count) for run in runs(points, 10_000)]

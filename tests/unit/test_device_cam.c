@@ -78,6 +78,7 @@ static void assert_bank_reads(uint16_t file, const struct lw_cam_bank *expected)
 static void test_upload_check_activate(void)
 {
 	const struct lw_cam_bank bank = cam_bank(hill);
+	const struct lw_log_record *newest;
 
 	assert_banks(LW_CAM_BANK_STATE_EMPTY, LW_CAM_BANK_STATE_EMPTY);
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_rows);
@@ -102,6 +103,9 @@ static void test_upload_check_activate(void)
 	command(LW_COMMAND_CAM_ACTIVATE);
 	assert_banks(LW_CAM_BANK_STATE_ACTIVE, LW_CAM_BANK_STATE_READY);
 	TEST_ASSERT_EQUAL_INT32(4, status()->cam_rows);
+	newest = &rig.store.log.records[rig.store.log.newest % LW_LOG_RECORDS];
+	TEST_ASSERT_EQUAL_UINT16(LW_EVENT_CAM_ACTIVATED, newest->event);
+	TEST_ASSERT_EQUAL_INT32((int32_t)bank.table.version, newest->detail);
 }
 
 static void test_an_empty_bank_cannot_be_checked_or_activated(void)

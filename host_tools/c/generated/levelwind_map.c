@@ -381,7 +381,7 @@ static const struct levelwind_value flag_values[] = {
 	{21, "dirty", "Active parameters differ from the stored ones: SAVE to keep them"},
 	{
 		22, "defaults_loaded",
-		"No usable stored set was found at power-up: factory values are active until a SAVE",
+		"No usable stored set was found at power-up: it began with the factory values, and nothing is stored until a SAVE",
 	},
 	{23, "trim_pending", "A trim waits for the carriage to be in the sweep"},
 	{24, "correction_pending", "A re-index correction waits for the end of the reversal"},

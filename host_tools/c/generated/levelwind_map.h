@@ -501,7 +501,10 @@ enum levelwind_flag {
 	LEVELWIND_FLAG_STAGED = 20,
 	/** Active parameters differ from the stored ones: SAVE to keep them */
 	LEVELWIND_FLAG_DIRTY = 21,
-	/** No usable stored set was found at power-up: factory values are active until a SAVE */
+	/**
+	 * No usable stored set was found at power-up: it began with the factory values, and nothing
+	 * is stored until a SAVE
+	 */
 	LEVELWIND_FLAG_DEFAULTS_LOADED = 22,
 	/** A trim waits for the carriage to be in the sweep */
 	LEVELWIND_FLAG_TRIM_PENDING = 23,

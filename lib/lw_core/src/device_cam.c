@@ -226,6 +226,7 @@ static void put_in_force(struct lw_device *device)
 	device->controller.cam_refusal = (struct lw_cam_refusal){0};
 	device->cam_stored = false;
 	lw_store_save_cam(device->config->store, bank);
+	lw_device_log(device, LW_EVENT_CAM_ACTIVATED, (int32_t)bank->table.version);
 }
 
 /** Can the running cam go over to another bank at the end of its cycle? */

@@ -20,8 +20,8 @@ def read_firmware(device: Device) -> str:
     return ".".join(map(str, version.values()))
 
 
-def write(device: Device, copy: str, path: Path) -> None:
-    """Save one of the three sets."""
+def write(device: Device, copy: str, path: Path) -> Path | None:
+    """Save one of the three sets. A file that is there is kept under the name returned."""
     values = read_set(device, copy)
     document = {
         "levelwind_backup": MAP_VERSION,
@@ -29,10 +29,14 @@ def write(device: Device, copy: str, path: Path) -> None:
         "saved": time.strftime("%Y-%m-%d %H:%M:%S"),
         "parameters": {p.name: json_value(p, values[p.name]) for p in PARAMETERS},
     }
+    kept = path.with_name(f"{path.name}.bak") if path.exists() else None
     try:
+        if kept is not None:
+            path.replace(kept)
         path.write_text(yaml.safe_dump(document, sort_keys=False), encoding="utf-8")
     except OSError as error:
         raise ToolError(f"{path}: {error.strerror}.") from error
+    return kept
 
 
 def read(path: Path, firmware: str) -> dict[str, int]:

@@ -27,7 +27,6 @@ def read(path: Path) -> tuple[tuple[int, int], ...]:
 def write(path: Path, rows: Iterable[Sequence[int]], comments: Sequence[str] = ()) -> None:
     """A file that read() reads; the suffix says whether it is XLSX, CSV or plain text."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         if path.suffix.lower() in XLSX:
             _write_sheet(path, rows)
             return

@@ -1,6 +1,7 @@
 """The demonstration: simulator, field setup, indexing, one launch, checks, a picture."""
 
 import contextlib
+import sys
 import tempfile
 import time
 from dataclasses import dataclass
@@ -185,6 +186,7 @@ def _stay(port: str, storage: Path) -> None:
             "    (a pseudo terminal has no parity bit: choose parity none)\n"
             "or try, in another terminal,\n"
             f"    mbpoll -m rtu -b 19200 -P none -a 1 -0 -t 3 -r 100 -c 5 {running.port}\n"
+            f"    source {Path(sys.prefix) / 'bin' / 'activate'}\n"
             f"    export LEVELWIND_PORT={running.port}\n"
             "    levelwind index && levelwind status --watch\n"
             "Ctrl-C ends it."

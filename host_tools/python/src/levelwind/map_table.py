@@ -504,6 +504,7 @@ class Event(MapEnum):
     SAVED = 42, "saved", "The active parameters were stored. Detail: sequence number of the record"
     SAVE_FAILED = 43, "save_failed", "The storage failed. Detail: its error number"
     FACTORY_STAGED = 44, "factory_staged", "Factory values were staged"
+    CAM_ACTIVATED = 45, "cam_activated", "A cam table came into force. Detail: its version"
     LOCK_OPENED = 50, "lock_opened", "The write lock was opened"
     LOCK_CLOSED = 51, "lock_closed", "The write lock closed"
 
@@ -676,7 +677,7 @@ class Flag(MapEnum):
     DEFAULTS_LOADED = (
         22,
         "defaults_loaded",
-        "No usable stored set was found at power-up: factory values are active until a SAVE",
+        "No usable stored set was found at power-up: it began with the factory values, and nothing is stored until a SAVE",
     )
     TRIM_PENDING = 23, "trim_pending", "A trim waits for the carriage to be in the sweep"
     CORRECTION_PENDING = (
@@ -1054,7 +1055,7 @@ POINTS: dict[str, Point] = {
             address=22,
             space="discrete",
             type="bit",
-            text="No usable stored set was found at power-up: factory values are active until a SAVE",
+            text="No usable stored set was found at power-up: it began with the factory values, and nothing is stored until a SAVE",
             block="discretes",
         ),
         Point(

@@ -20,7 +20,6 @@ def new_figure(width_in: float, height_in: float) -> Figure:
 def save(figure: Figure, path: Path) -> None:
     """Write the picture; the suffix of the path says the format."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(path)
     except (OSError, ValueError) as error:
         raise ToolError(f"{path} cannot be written: {error}.") from error

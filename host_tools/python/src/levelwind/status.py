@@ -15,11 +15,17 @@ from levelwind.parameter_sets import read_set
 from levelwind.points import enum_label, enum_text, flag_names, inhibit_texts
 
 LIVE_POINTS = [p for p in POINTS.values() if p.block == "status" and 100 <= p.address < 200]
-LOS_KINDS = {"los1_plus": "1+", "los1_minus": "1-", "los2_plus": "2+", "los2_minus": "2-"}
+LOS_KINDS = {
+    "los1_plus": "1+, the plus switch did not trigger",
+    "los1_minus": "1-, the minus switch did not trigger",
+    "los2_plus": "2+, the plus switch triggered out of place",
+    "los2_minus": "2-, the minus switch triggered out of place",
+}
 LOS_POINTS = [
     POINTS[f"{kind}_{part}"] for kind in LOS_KINDS for part in ("count", "position_um", "time_ms")
 ]
 HEALTH_POINTS = [p for p in POINTS.values() if p.block == "status" and 340 <= p.address < 370]
+CAM_POINTS = [POINTS[name] for name in ("cam_version", "cam_rows", "cam_row", "cam_cycles")]
 STACKS = ("supervisor", "limits", "modbus", "storage", "interrupts")
 STATE_STYLES = {State.TRACKING: "green", State.READY: "cyan", State.FAULT: "red"}
 NOTICES = (
@@ -56,8 +62,9 @@ def read_live(device: Device) -> dict[str, int]:
 
 
 def read_status(device: Device) -> dict[str, int]:
-    """The live status, the LOS records, and what the firmware measures of itself."""
-    return read_live(device) | device.read(LOS_POINTS) | device.read(HEALTH_POINTS)
+    """The live status, the LOS records, the cam, and what the firmware measures of itself."""
+    more = [*LOS_POINTS, *CAM_POINTS, *HEALTH_POINTS]
+    return read_live(device) | device.read(more)
 
 
 def read_travel(device: Device) -> Travel:
@@ -93,6 +100,8 @@ def render(status: Mapping[str, int], travel: Travel) -> Panel:
     rows.add_column()
     rows.add_row("Launch", _permit(status))
     rows.add_row("LOS", _los(status))
+    if status["cam_row"]:
+        rows.add_row("Cam", _cam(status))
     rows.add_row("Carriage", _carriage(status, travel))
     if flag(status, Flag.INDEXED):
         rows.add_row("", _bar(status["position_um"], travel))
@@ -133,16 +142,26 @@ def _permit(status: Mapping[str, int]) -> Text:
 
 def _los(status: Mapping[str, int]) -> Text:
     seen = [
-        f"{kind} at {status[f'{name}_position_um'] / 1000:+.2f} mm, "
+        f"type {kind}: at {status[f'{name}_position_um'] / 1000:+.2f} mm, "
         f"{status[f'{name}_time_ms'] / 1000:.1f} s after power-up "
-        f"({status[f'{name}_count']} since then)"
+        f"({status[f'{name}_count']} since power-up)"
         for name, kind in LOS_KINDS.items()
         if flag(status, Flag[name.upper()])
     ]
     if not seen:
         return Text("in synchronization", style="green")
     recoveries = f"{status['los_recoveries']} re-indexings in this launch"
-    return Text("\n".join([*seen, recoveries]), style="bold red")
+    return Text(
+        "\n".join(["LOST: THE ROPE MAY BE LAID WRONG", *seen, recoveries]), style="bold red"
+    )
+
+
+def _cam(status: Mapping[str, int]) -> Text:
+    return Text(
+        f"not the level-wind law: table version {status['cam_version']}, "
+        f"row {status['cam_row']} of {status['cam_rows']}, cycle {status['cam_cycles']:+d}",
+        style="bold yellow",
+    )
 
 
 def _encoder(status: Mapping[str, int]) -> Text:

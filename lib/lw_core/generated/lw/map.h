@@ -475,6 +475,8 @@ enum lw_event {
 	LW_EVENT_SAVE_FAILED = 43,
 	/** Factory values were staged */
 	LW_EVENT_FACTORY_STAGED = 44,
+	/** A cam table came into force. Detail: its version */
+	LW_EVENT_CAM_ACTIVATED = 45,
 	/** The write lock was opened */
 	LW_EVENT_LOCK_OPENED = 50,
 	/** The write lock closed */
@@ -657,7 +659,10 @@ enum lw_flag {
 	LW_FLAG_STAGED = 20,
 	/** Active parameters differ from the stored ones: SAVE to keep them */
 	LW_FLAG_DIRTY = 21,
-	/** No usable stored set was found at power-up: factory values are active until a SAVE */
+	/**
+	 * No usable stored set was found at power-up: it began with the factory values, and nothing
+	 * is stored until a SAVE
+	 */
 	LW_FLAG_DEFAULTS_LOADED = 22,
 	/** A trim waits for the carriage to be in the sweep */
 	LW_FLAG_TRIM_PENDING = 23,

@@ -10,9 +10,9 @@ import typer
 from levelwind import cam_files, cam_levelwind, cam_report, planning
 from levelwind.cam import ROWS_MAX, Cam, Limits, Scale, Table, check, from_words, words
 from levelwind.connection import Json, with_device
-from levelwind.device import Device
+from levelwind.device import COMMAND_STATUS, Device
 from levelwind.errors import RefusedError, ToolError
-from levelwind.map_table import POINTS, CamBankState, CamInterpolation, Command
+from levelwind.map_table import POINTS, CamBankState, CamInterpolation, Command, MotionProfile
 from levelwind.output import console, print_json, print_table, warn
 from levelwind.parameter_sets import read_sets
 from levelwind.points import parse_assignments
@@ -56,6 +56,9 @@ SCALE_PARAMETERS = (
 )
 TOP_RATE = POINTS["overspeed_trip_edges_per_s"].default or 0
 STEP_RATE = POINTS["cam_steps_per_s_max"].default or 0
+
+PROFILE = POINTS["motion_profile"]
+CAM_REASON = [POINTS[f"cam_reason{part}"] for part in ("", "_row", "_value", "_limit")]
 
 # A bank as a file (lw/cam_banks.h).
 FIRST_BANK_FILE = 2
@@ -103,7 +106,7 @@ def check_(
     step_rate: StepRate = STEP_RATE,
     json_output: Json = False,
 ) -> None:
-    """Check a table by the controller's own rules; say what it asks of the machine."""
+    """Check a table by the controller's own rules, but for the flanges: `upload` asks those."""
     table = load(file, interpolation, advancing)
     result = cam_report.report(table, scale_of(master, slave, ramp), Limits(top_rate, step_rate))
     if json_output:
@@ -130,6 +133,7 @@ def plot(
     table = load(file, interpolation, advancing)
     result = cam_report.report(table, scale_of(master, slave, ramp), Limits(top_rate, step_rate))
     cam_report.plot(result, picture)
+    console.print(f"Wrote {picture}.")
     for text in result.warnings:
         warn(text)
 
@@ -183,12 +187,17 @@ def _send(device: Device, table: Table) -> None:
 
 
 def _command(device: Device, command: Command) -> None:
-    """Give a command; a refusal names the row."""
+    """Give a command; a refusal of the table names the row, the value and the limit."""
     try:
         device.command(command)
     except RefusedError as error:
-        row = device.value("cam_reason_row")
-        raise RefusedError(f"{f'Row {row}: ' if row else ''}{error}") from None
+        why = device.read([*COMMAND_STATUS, *CAM_REASON])
+        if why["cam_reason"] != why["command_reason"] or not why["cam_reason_row"]:
+            raise
+        raise RefusedError(
+            f"Row {why['cam_reason_row']}: {error} "
+            f"{why['cam_reason_value']}, limit {why['cam_reason_limit']}"
+        ) from None
 
 
 def _table(
@@ -238,6 +247,11 @@ def activate(
     _command(device, Command.CAM_ACTIVATE)
     queued = device.value("cam_queued")
     console.print("Queued for the end of the cycle." if queued else "In force.")
+    if read_sets(device, [PROFILE])["active"][PROFILE.name] != MotionProfile.CAM:
+        console.print(
+            "The carriage follows the screw all the same: "
+            "`levelwind set motion_profile=cam`, `levelwind apply`."
+        )
 
 
 @app.command()

@@ -22,11 +22,13 @@ def backup(
     file: YamlFile,
     copy: Annotated[str, typer.Option("--set", help="staged, active or stored.")] = "active",
 ) -> None:
-    """Write all parameters to a file."""
+    """Write all parameters to a file. A cam table is not in it: `levelwind cam download`."""
     if copy not in COPIES:
         raise ToolError(f"--set {copy}: give one of {', '.join(COPIES)}.")
-    backups.write(device, copy, file)
+    kept = backups.write(device, copy, file)
     console.print(f"{file}: the {copy} parameters.")
+    if kept is not None:
+        console.print(f"{kept}: what was in that file before.")
 
 
 @with_device
@@ -37,10 +39,13 @@ def restore(
 ) -> None:
     """Make the parameters of a backup active, all or none."""
     values = backups.read(file, backups.read_firmware(device))
+    indexed = device.value("indexed")
     replace_set(device, values)
     if save:
         device.command(Command.SAVE)
     console.print(f"{len(values)} parameters active{' and saved' if save else ''}.")
+    if indexed and not device.value("indexed"):
+        console.print("The position is unknown now: `levelwind index`.")
 
 
 @with_device

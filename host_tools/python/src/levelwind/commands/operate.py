@@ -10,7 +10,7 @@ from rich.live import Live
 from levelwind import recorder
 from levelwind.connection import Json, with_device
 from levelwind.device import Device
-from levelwind.errors import ToolError
+from levelwind.errors import RefusedError, ToolError
 from levelwind.map_table import (
     MAP_VERSION,
     POINTS,
@@ -19,12 +19,14 @@ from levelwind.map_table import (
     SELF_TEST,
     VENDOR,
     Command,
+    Fault,
     Flag,
     Mode,
     State,
 )
 from levelwind.motion import INDEX_LIMIT_S, hold_jog
 from levelwind.output import console, json_value, print_json
+from levelwind.parameter_sets import read_sets
 from levelwind.points import enum_label, format_value, parse_value
 from levelwind.status import (
     Travel,
@@ -109,6 +111,8 @@ def index(device: Device) -> None:
 
         try:
             device.command(Command.INDEX, show, INDEX_LIMIT_S)
+        except RefusedError as error:
+            raise RefusedError(f"{error}{_span_error(device)}") from None
         except KeyboardInterrupt:
             device.command(Command.STOP)
             raise
@@ -116,6 +120,18 @@ def index(device: Device) -> None:
     console.print(
         f"Indexed: {enum_label(State, live['state'])} at {live['position_um'] / 1000:+.2f} mm; "
         f"the other switch was {live['span_error_um'] / 1000:+.2f} mm from its place."
+    )
+
+
+def _span_error(device: Device) -> str:
+    """After an indexing that failed by it: how far from its place the other switch was."""
+    if device.value("fault") != Fault.INDEX_SPAN:
+        return ""
+    error_um = device.value("span_error_um")
+    active = read_sets(device, [POINTS["span_tolerance_um"]])["active"]
+    return (
+        f"\nIt was {error_um / 1000:+.2f} mm from its place, or not there at all: "
+        f"the search ends {active['span_tolerance_um'] / 1000:.2f} mm past it (span_tolerance_um)."
     )
 
 
@@ -129,8 +145,12 @@ def stop(device: Device) -> None:
 @with_device
 def clear_fault(device: Device) -> None:
     """Acknowledge a fault whose cause is gone. Indexing is needed afterwards."""
+    fault = device.value("fault")
     device.command(Command.CLEAR_FAULT)
-    console.print("No fault stands. Position unknown? `levelwind index`.")
+    if fault:
+        console.print(f"Cleared: {enum_label(Fault, fault)}. Position unknown? `levelwind index`.")
+    else:
+        console.print("There was no fault.")
 
 
 @with_device

@@ -96,9 +96,10 @@ def set_values(
 @with_device
 def apply(device: Device) -> None:
     """Check the staged parameters as a whole and make them active."""
+    indexed = device.value("indexed")
     device.command(Command.APPLY)
     console.print("Active. `levelwind save` keeps it over a power cut.")
-    if not device.value("indexed"):
+    if indexed and not device.value("indexed"):
         console.print("The position is unknown now: `levelwind index`.")
 
 
