@@ -195,7 +195,7 @@ def _command(device: Device, command: Command) -> None:
         if why["cam_reason"] != why["command_reason"] or not why["cam_reason_row"]:
             raise
         raise RefusedError(
-            f"Row {why['cam_reason_row']}: {error} "
+            f"Row {why['cam_reason_row']}: {error}: "
             f"{why['cam_reason_value']}, limit {why['cam_reason_limit']}"
         ) from None
 
