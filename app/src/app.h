@@ -2,12 +2,14 @@
  * @file
  * What the contexts of the firmware share: the device, its lock and its clock.
  *
- * Each of these may interrupt those below:
+ * Each of these may interrupt those below (interrupts.c checks the order of the interrupts):
  *
- * - encoder and edge timer, interrupts: decode, law, step (machine.c)
+ * - encoder and step pulse, interrupts: decode, law, step (machine.c)
+ * - edge timer, interrupt: law, step (machine.c)
  * - limit and overtravel switches, interrupts: keep the position of a contact change (limits.c),
  *   block steps (machine.c)
  * - UART, interrupt: move bytes (modbus.c)
+ * - system timer, interrupt: the kernel's time-outs
  * - limits thread: debounce (limits.c)
  * - supervisor, the main thread: a tick every millisecond, and the outputs (main.c)
  * - Modbus thread: requests (modbus.c)

@@ -7,6 +7,7 @@
 #include <zephyr/logging/log.h>
 
 #include "app.h"
+#include "interrupts.h"
 #include "limits.h"
 #include "machine.h"
 #include "modbus.h"
@@ -133,6 +134,7 @@ int main(void)
 	struct k_timer ticks;
 	int ret;
 
+	interrupts_start();
 	k_thread_priority_set(k_current_get(), APP_PRIORITY_SUPERVISOR);
 	ret = watch_start();
 	if (ret == 0) {
