@@ -126,6 +126,7 @@ static void tick(struct lw_world *world)
 		world->bench.power_cut = false;
 		power_up(world, world->device.slave.last_request_us);
 	}
+	lw_controller_stepper_alarm(&world->device.controller, world->plant.pins.stepper_alarm);
 	lw_device_tick(&world->device, controller_us(world));
 	serve_storage(world);
 	serve_outputs(world);
@@ -163,9 +164,6 @@ static void plant_event(struct lw_world *world)
 	}
 	if ((changed & LW_PLANT_ENCODER_INDEX) && pins->encoder_index) {
 		lw_controller_encoder_index(controller);
-	}
-	if (changed & LW_PLANT_STEPPER_ALARM) {
-		lw_controller_stepper_alarm(controller, pins->stepper_alarm);
 	}
 	for (int side = 0; side < 2; side++) {
 		if (changed & (side == LW_PLUS ? LW_PLANT_LIMIT_PLUS : LW_PLANT_LIMIT_MINUS)) {

@@ -285,7 +285,7 @@ def test_stepper_alarm_in_a_launch():
     world.drum(20_000)
     world.run(1.0)
     world.write(bench_stepper_alarm=1)
-    world.run(0.002)
+    world.run(0.004)
     assert (world.state, world.fault) == (State.FAULT, Fault.STEPPER_ALARM)
     assert world.value("launch_inhibit") & 1 << LaunchInhibit.STEPPER_ALARM
     steps = world.value("steps")
@@ -295,7 +295,7 @@ def test_stepper_alarm_in_a_launch():
     with pytest.raises(RequestRefusedError, match="06, cause_present"):
         world.command(Command.CLEAR_FAULT)
     world.write(bench_stepper_alarm=0)
-    world.run(0.002)
+    world.run(0.004)
     world.command(Command.CLEAR_FAULT)
     assert world.index().permit
 

@@ -5,6 +5,9 @@
 
 #include "controller_internal.h"
 
+/** The stepper driver's alarm counts when so many polls in a row have told it. */
+#define STEPPER_ALARM_POLLS 3
+
 static int busy(struct lw_refusal *why, enum lw_reason reason)
 {
 	why->reason = (uint16_t)reason;
@@ -187,7 +190,12 @@ void lw_controller_overtravel(struct lw_controller *controller, int side, bool a
 
 void lw_controller_stepper_alarm(struct lw_controller *controller, bool alarm)
 {
-	controller->stepper_alarm = alarm;
+	if (alarm == controller->stepper_alarm) {
+		controller->stepper_alarm_polls = 0;
+	} else if (++controller->stepper_alarm_polls == STEPPER_ALARM_POLLS) {
+		controller->stepper_alarm_polls = 0;
+		controller->stepper_alarm = alarm;
+	}
 }
 
 bool lw_controller_moving(const struct lw_controller *controller)

@@ -59,9 +59,10 @@ struct lw_controller {
 	struct lw_encoder_index encoder_index; /**< see lw/encoder_index.h */
 	struct lw_limit_switch limit[2]; /**< written by the limit-switch interrupts and ticks */
 	struct lw_limit_switch_config limit_config;
-	bool overtravel[2]; /**< written by the overtravel interrupts */
-	bool wiring[2];     /**< sticky wiring faults */
-	bool stepper_alarm; /**< told by the owner */
+	bool overtravel[2];          /**< written by the overtravel interrupts */
+	bool wiring[2];              /**< sticky wiring faults */
+	bool stepper_alarm;          /**< told by the owner */
+	uint8_t stepper_alarm_polls; /**< that have told the opposite, in a row */
 
 	enum lw_state state;
 	enum lw_mode mode;           /**< in force */
@@ -175,7 +176,10 @@ void lw_controller_limit(struct lw_controller *controller, int side, bool no_clo
 /** Take an overtravel switch after a change. For its interrupt. Stops steps that way at once. */
 void lw_controller_overtravel(struct lw_controller *controller, int side, bool actuated);
 
-/** Tell whether the stepper driver reports an alarm. The next tick stops for it. */
+/**
+ * Tell whether the stepper driver reports an alarm. Call it before every tick: what three calls in
+ * a row tell counts, so that a disturbed sample ends no launch, and the next tick stops for it.
+ */
 void lw_controller_stepper_alarm(struct lw_controller *controller, bool alarm);
 
 /** Supervise. Call every LW_CONTROLLER_TICK_US. */
