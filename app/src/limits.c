@@ -17,8 +17,8 @@ struct change {
 
 K_MSGQ_DEFINE(changes, sizeof(struct change), CHANGES_MAX, 8);
 
-/* A change found no room. Set by the interrupts, cleared by the thread. */
-static atomic_t changes_lost;
+/* A change found no room, or came before the interrupts. Set by them, cleared by the thread. */
+static atomic_t changes_lost = ATOMIC_INIT(1);
 
 static K_THREAD_STACK_DEFINE(stack, 512);
 static struct k_thread thread;
@@ -78,7 +78,8 @@ static void run(void *unused1, void *unused2, void *unused3)
 	ARG_UNUSED(unused2);
 	ARG_UNUSED(unused3);
 	for (;;) {
-		const int ret = k_msgq_get(&changes, &change, WATCH_PERIOD);
+		const int ret = k_msgq_get(&changes, &change,
+					   atomic_get(&changes_lost) ? K_NO_WAIT : WATCH_PERIOD);
 
 		watch_report(WATCH_LIMITS);
 		k_mutex_lock(&app_lock, K_FOREVER);
@@ -99,14 +100,14 @@ int limits_start(void)
 	if (ret) {
 		return ret;
 	}
-	k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), run, NULL, NULL, NULL,
-			APP_PRIORITY_LIMITS, 0, K_NO_WAIT);
-	k_thread_name_set(&thread, "limits");
 	for (int side = 0; side < 2; side++) {
 		ret = lw_contacts_start(switches[side], on_change, (void *)(intptr_t)side);
 		if (ret) {
 			return ret;
 		}
 	}
+	k_thread_create(&thread, stack, K_THREAD_STACK_SIZEOF(stack), run, NULL, NULL, NULL,
+			APP_PRIORITY_LIMITS, 0, K_NO_WAIT);
+	k_thread_name_set(&thread, "limits");
 	return 0;
 }

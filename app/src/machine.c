@@ -100,6 +100,20 @@ static void on_overtravel(struct lw_contacts contacts, void *user_data)
 				 lw_contacts_actuated(overtravels[side], contacts));
 }
 
+/** What a contact did before its interrupt was enabled, nobody has told. */
+static int read_overtravel(int side)
+{
+	struct lw_contacts contacts;
+	const unsigned int key = irq_lock();
+	const int ret = lw_contacts_read(overtravels[side], &contacts);
+
+	if (ret == 0) {
+		on_overtravel(contacts, (void *)(intptr_t)side);
+	}
+	irq_unlock(key);
+	return ret;
+}
+
 int machine_check(void)
 {
 	const struct device *const devices[] = {encoder,
@@ -161,6 +175,9 @@ int machine_start(void)
 	}
 	for (int side = 0; side < 2 && ret == 0; side++) {
 		ret = lw_contacts_start(overtravels[side], on_overtravel, (void *)(intptr_t)side);
+		if (ret == 0) {
+			ret = read_overtravel(side);
+		}
 	}
 	return ret;
 }
