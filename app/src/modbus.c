@@ -16,15 +16,19 @@ static const struct device *const uart = DEVICE_DT_GET(DT_PHANDLE(APP_NODE, modb
 static const struct gpio_dt_spec driver_enable =
 	GPIO_DT_SPEC_GET_OR(APP_NODE, driver_enable_gpios, {0});
 
-static K_THREAD_STACK_DEFINE(stack, 2048);
+static K_THREAD_STACK_DEFINE(stack, 1792);
 static struct k_thread thread;
 
-/* What has been received. Filled by the interrupt, emptied by the thread with it locked out. */
-static struct {
+/** What has been received. */
+struct reception {
 	uint64_t last_byte_us;
 	size_t length; /**< one more than a frame can have stands for too much */
 	uint8_t bytes[LW_RTU_FRAME_MAX + 1];
-} rx;
+};
+
+/* The interrupt fills one, the thread works on the other; it swaps them with interrupts locked. */
+static struct reception receptions[2];
+static struct reception *rx = &receptions[0];
 static K_SEM_DEFINE(rx_begun, 0, 1);
 
 /* What is being sent. The thread's while it holds tx_free, else the interrupt's. */
@@ -33,15 +37,11 @@ static struct {
 	size_t sent;
 	uint8_t bytes[LW_RTU_FRAME_MAX];
 } tx;
+static bool sending; /**< likewise */
 static K_SEM_DEFINE(tx_free, 1, 1);
 
 /** What the UART is configured to. The thread's, once it runs. */
 static struct lw_line configured;
-
-static bool sending(void)
-{
-	return k_sem_count_get(&tx_free) == 0;
-}
 
 static void receive(void)
 {
@@ -49,16 +49,16 @@ static void receive(void)
 	const int count = uart_fifo_read(uart, bytes, sizeof(bytes));
 
 	/* On a two-wire line everything that is sent is heard, too. */
-	if (count <= 0 || (driver_enable.port != NULL && sending())) {
+	if (count <= 0 || (driver_enable.port != NULL && sending)) {
 		return;
 	}
 
-	const size_t room = sizeof(rx.bytes) - rx.length;
+	const size_t room = sizeof(rx->bytes) - rx->length;
 	const size_t taken = MIN((size_t)count, room);
 
-	memcpy(&rx.bytes[rx.length], bytes, taken);
-	rx.length += taken;
-	rx.last_byte_us = app_now_us();
+	memcpy(&rx->bytes[rx->length], bytes, taken);
+	rx->length += taken;
+	rx->last_byte_us = app_now_us();
 	k_sem_give(&rx_begun);
 }
 
@@ -74,6 +74,7 @@ static void send(void)
 		if (driver_enable.port != NULL) {
 			(void)gpio_pin_set_dt(&driver_enable, 0);
 		}
+		sending = false;
 		k_sem_give(&tx_free);
 	}
 }
@@ -95,34 +96,34 @@ static void on_uart(const struct device *dev, void *user_data)
  * Wait until the line has been silent after some bytes, and take them. One kernel timeout for each
  * silence, not for each byte.
  *
- * @return bytes; 0 if nothing has come for a while
+ * @return what has come, valid until the next call; NULL if nothing has for a while
  */
-static size_t wait_for_frame(uint8_t bytes[LW_RTU_FRAME_MAX + 1], uint64_t *last_byte_us)
+static const struct reception *wait_for_frame(void)
 {
 	const uint32_t silence_us = app_device.slave_config.rtu.silence_us;
 	uint32_t wait_us = silence_us;
 
 	if (k_sem_take(&rx_begun, WATCH_PERIOD) != 0) {
-		return 0;
+		return NULL;
 	}
 	for (;;) {
-		size_t length = 0;
+		const struct reception *frame = NULL;
 
 		k_usleep((int32_t)wait_us);
 
+		/* The encoder waits for this, too: no copying here. */
 		const unsigned int key = irq_lock();
-		const uint64_t silent_us = app_now_us() - rx.last_byte_us;
+		const uint64_t silent_us = app_now_us() - rx->last_byte_us;
 
 		if (silent_us >= silence_us) {
-			length = rx.length;
-			memcpy(bytes, rx.bytes, length);
-			*last_byte_us = rx.last_byte_us;
-			rx.length = 0;
+			frame = rx;
+			rx = rx == &receptions[0] ? &receptions[1] : &receptions[0];
+			rx->length = 0;
 			k_sem_reset(&rx_begun);
 		}
 		irq_unlock(key);
-		if (length > 0) {
-			return length;
+		if (frame != NULL) {
+			return frame;
 		}
 		wait_us = (uint32_t)(silence_us - silent_us);
 	}
@@ -164,11 +165,21 @@ static int configure_line(const struct lw_line *line)
 #endif
 
 /** Take tx_free. The longest answer takes more than two seconds at 1,200 baud. */
-static void wait_until_sent(void)
+static void wait_until_sent(enum watch_thread caller)
 {
 	while (k_sem_take(&tx_free, WATCH_PERIOD) != 0) {
-		watch_report(WATCH_MODBUS);
+		watch_report(caller);
 	}
+}
+
+void modbus_hold(enum watch_thread caller)
+{
+	wait_until_sent(caller);
+}
+
+void modbus_release(void)
+{
+	k_sem_give(&tx_free);
 }
 
 /** Make the UART as the device wants it, once nothing is being sent. */
@@ -182,7 +193,7 @@ static void follow_line_settings(void)
 	if (line.baud_rate == configured.baud_rate && line.format == configured.format) {
 		return;
 	}
-	wait_until_sent();
+	wait_until_sent(WATCH_MODBUS);
 	if (configure_line(&line) != 0) {
 		LOG_ERR("the UART refuses %u baud, format %d", line.baud_rate, (int)line.format);
 	}
@@ -192,25 +203,22 @@ static void follow_line_settings(void)
 
 static void run(void *unused1, void *unused2, void *unused3)
 {
-	uint8_t bytes[LW_RTU_FRAME_MAX + 1];
-	uint64_t last_byte_us;
-
 	ARG_UNUSED(unused1);
 	ARG_UNUSED(unused2);
 	ARG_UNUSED(unused3);
 	for (;;) {
 		follow_line_settings();
 
-		const size_t count = wait_for_frame(bytes, &last_byte_us);
+		const struct reception *frame = wait_for_frame();
 		struct lw_slave *slave = &app_device.slave;
 
 		watch_report(WATCH_MODBUS);
-		if (count == 0) {
+		if (frame == NULL) {
 			continue;
 		}
-		wait_until_sent();
+		wait_until_sent(WATCH_MODBUS);
 		k_mutex_lock(&app_lock, K_FOREVER);
-		lw_slave_receive(slave, bytes, count, last_byte_us);
+		lw_slave_receive(slave, frame->bytes, frame->length, frame->last_byte_us);
 		tx.length = lw_slave_poll(slave, app_now_us(), tx.bytes);
 		k_mutex_unlock(&app_lock);
 		tx.sent = 0;
@@ -218,6 +226,7 @@ static void run(void *unused1, void *unused2, void *unused3)
 			k_sem_give(&tx_free);
 			continue;
 		}
+		sending = true;
 		if (driver_enable.port != NULL) {
 			(void)gpio_pin_set_dt(&driver_enable, 1);
 		}
@@ -225,17 +234,24 @@ static void run(void *unused1, void *unused2, void *unused3)
 	}
 }
 
+int modbus_let_go(void)
+{
+	if (driver_enable.port == NULL) {
+		return 0;
+	}
+	return gpio_is_ready_dt(&driver_enable)
+		       ? gpio_pin_configure_dt(&driver_enable, GPIO_OUTPUT_INACTIVE)
+		       : -ENODEV;
+}
+
 int modbus_start(void)
 {
 	int ret;
 
-	if (!device_is_ready(uart) ||
-	    (driver_enable.port != NULL && !gpio_is_ready_dt(&driver_enable))) {
+	if (!device_is_ready(uart)) {
 		return -ENODEV;
 	}
-	ret = driver_enable.port == NULL
-		      ? 0
-		      : gpio_pin_configure_dt(&driver_enable, GPIO_OUTPUT_INACTIVE);
+	ret = modbus_let_go();
 	if (ret == 0) {
 		configured = app_device.line;
 		ret = configure_line(&configured);

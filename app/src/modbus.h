@@ -6,6 +6,18 @@
 #ifndef MODBUS_H
 #define MODBUS_H
 
+#include "watch.h"
+
+/**
+ * Let go of a two-wire line, whatever is being sent. First of all at power-up, for until then the
+ * pin floats, and last of all before a restart. Interrupt safe.
+ *
+ * @retval 0 done
+ * @retval -ENODEV the pin is missing
+ * @retval <0 errno of its driver
+ */
+int modbus_let_go(void);
+
 /**
  * Configure the line by the stored parameters and begin to answer. app_device must be initialized.
  * Not for interrupt context.
@@ -16,5 +28,17 @@
  * @retval <0 errno of a driver
  */
 int modbus_start(void);
+
+/**
+ * Wait until nothing is being sent, and let nothing be sent until modbus_release(). For a thread
+ * that makes the processor stand still: an answer that stands still keeps the line from all others.
+ * Not for interrupt context.
+ *
+ * @param caller the thread, which reports while it waits
+ */
+void modbus_hold(enum watch_thread caller);
+
+/** Let answers be sent again. By the thread that called modbus_hold(). */
+void modbus_release(void);
 
 #endif /* MODBUS_H */

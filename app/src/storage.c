@@ -5,6 +5,7 @@
 #include <zephyr/settings/settings.h>
 
 #include "app.h"
+#include "modbus.h"
 #include "watch.h"
 
 #define TREE "levelwind"
@@ -24,9 +25,12 @@ static bool writing;                      /**< under app_lock */
 
 static void write_slot(struct k_work *work)
 {
-	const int ret = settings_save_one(names[slot], bytes, length);
+	int ret;
 
 	ARG_UNUSED(work);
+	modbus_hold(WATCH_STORAGE);
+	ret = settings_save_one(names[slot], bytes, length);
+	modbus_release();
 	k_mutex_lock(&app_lock, K_FOREVER);
 	writing = false;
 	lw_device_end_write(&app_device, ret);
