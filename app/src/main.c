@@ -136,6 +136,7 @@ int main(void)
 
 	interrupts_start();
 	k_thread_priority_set(k_current_get(), APP_PRIORITY_SUPERVISOR);
+	(void)modbus_let_go();
 	ret = watch_start();
 	if (ret == 0) {
 		ret = watch_add(WATCH_SUPERVISOR);

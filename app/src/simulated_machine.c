@@ -6,6 +6,7 @@
 #include "app.h"
 #include "lw/plant.h"
 #include "lw/plant_bench.h"
+#include "watch.h"
 
 #define MACHINE_PIN(device, pin) GPIO_DT_SPEC_GET(DT_PHANDLE(APP_NODE, device), pin)
 
@@ -218,8 +219,21 @@ void simulated_machine_note_restart(enum lw_bench_restart noted)
 	restart = noted;
 }
 
+/** Does not return. A fault of native_sim would be one of the host's program. */
+static void fault(void)
+{
+#ifdef CONFIG_ARCH_POSIX
+	k_panic();
+#else
+	__builtin_trap();
+#endif
+}
+
 void simulated_machine_hang(int thread)
 {
+	if (bench.hang == LW_BENCH_THREAD_FAULT && thread == WATCH_MODBUS) {
+		fault();
+	}
 	/* The bench counts threads from 1. Waiting busily, because else no time passes on
 	 * native_sim. */
 	while ((int)bench.hang == thread + 1) {

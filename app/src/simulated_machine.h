@@ -38,7 +38,7 @@ bool simulated_machine_has_current(void);
 /** Tell the bench how the last restart was. Before simulated_machine_start(). */
 void simulated_machine_note_restart(enum lw_bench_restart restart);
 
-/** Hang for ever if the bench wants it of this thread (enum watch_thread). */
+/** Hang for ever, or fail, if the bench wants it of this thread (enum watch_thread). */
 void simulated_machine_hang(int thread);
 
 /** Has the bench asked for a restart of the controller? Tells it once. */

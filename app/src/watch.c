@@ -1,16 +1,18 @@
 #include "watch.h"
 
 #include <zephyr/drivers/hwinfo.h>
+#include <zephyr/fatal.h>
 #include <zephyr/sys/reboot.h>
 #include <zephyr/task_wdt/task_wdt.h>
 
 #include "app.h"
 #include "machine.h"
+#include "modbus.h"
 #ifdef CONFIG_LW_SIMULATED_MACHINE
 #include "simulated_machine.h"
 #endif
 
-/** `watch_note` after a restart by the watchdog; anything else is what the power-up has left. */
+/** `watch_note` after a restart by this file; anything else is what the power-up has left. */
 #define NOTE_WATCHDOG     0x77617463u
 #define NOTE_WITH_CURRENT (NOTE_WATCHDOG + 1) /**< the simulated stepper still had current */
 
@@ -22,13 +24,12 @@ static bool by_watchdog;
 static int channels[WATCH_THREADS];
 static k_tid_t threads[WATCH_THREADS]; /**< each written by the thread itself, once */
 
-/** In the system timer's interrupt. */
-static void restart(int channel, void *user_data)
+/** From any context, a processor's fault included. */
+static FUNC_NORETURN void restart(void)
 {
-	ARG_UNUSED(channel);
-	ARG_UNUSED(user_data);
 	(void)irq_lock();
 	machine_stop();
+	(void)modbus_let_go();
 	watch_note = NOTE_WATCHDOG;
 #ifdef CONFIG_LW_SIMULATED_MACHINE
 	if (simulated_machine_has_current()) {
@@ -36,6 +37,22 @@ static void restart(int channel, void *user_data)
 	}
 #endif
 	sys_reboot(SYS_REBOOT_COLD);
+}
+
+/** In the system timer's interrupt. */
+static void on_timeout(int channel, void *user_data)
+{
+	ARG_UNUSED(channel);
+	ARG_UNUSED(user_data);
+	restart();
+}
+
+/** In place of the kernel's, which would stand still with the current on. */
+void k_sys_fatal_error_handler(unsigned int reason, const struct arch_esf *esf)
+{
+	ARG_UNUSED(reason);
+	ARG_UNUSED(esf);
+	restart();
 }
 
 int watch_start(void)
@@ -68,7 +85,7 @@ bool watch_has_restarted(void)
 
 int watch_add(enum watch_thread thread)
 {
-	channels[thread] = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, restart, NULL);
+	channels[thread] = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, on_timeout, NULL);
 	return MIN(channels[thread], 0);
 }
 

@@ -1,7 +1,8 @@
 /**
  * @file
  * Every thread reports that it gets on with its work. A watchdog restarts the controller when one
- * has not for CONFIG_LW_WATCHDOG_TIMEOUT_MS; before that the stepper loses its current.
+ * has not for CONFIG_LW_WATCHDOG_TIMEOUT_MS, and the kernel's fatal errors do so at once; before
+ * that the stepper loses its current and the line its driver.
  */
 #ifndef WATCH_H
 #define WATCH_H
@@ -35,7 +36,7 @@ extern uint32_t watch_note;
  */
 int watch_start(void);
 
-/** Was the last restart made by the watchdog? */
+/** Was the last restart made by the watchdog or a fatal error? */
 bool watch_has_restarted(void);
 
 /**

@@ -45,7 +45,7 @@ def reconnect(slave: Slave, until: Callable[[Slave], bool]) -> None:
 
 
 @pytest.mark.parametrize("thread", THREADS, ids=lambda thread: thread.label)
-def test_a_thread_that_hangs_is_restarted(
+def test_a_thread_that_hangs_or_fails_is_restarted(
     target: str, own_simulator: Callable[..., Simulator], thread: BenchThread
 ) -> None:
     if target == "sim":

@@ -398,7 +398,7 @@ static const struct levelwind_value flag_values[] = {
 	},
 	{
 		30, "watchdog_reset",
-		"The last restart was made by the watchdog: a part of the firmware had stopped",
+		"The last restart was made by the watchdog, or after a fault of the processor: a part of the firmware had stopped",
 	},
 	{31, "cam_queued", "A cam table waits for the end of the cycle"},
 };

@@ -520,7 +520,10 @@ enum levelwind_flag {
 	LEVELWIND_FLAG_LOCKED = 28,
 	/** Line settings are on trial: any valid request to this unit confirms them */
 	LEVELWIND_FLAG_LINE_TRIAL = 29,
-	/** The last restart was made by the watchdog: a part of the firmware had stopped */
+	/**
+	 * The last restart was made by the watchdog, or after a fault of the processor: a part of
+	 * the firmware had stopped
+	 */
 	LEVELWIND_FLAG_WATCHDOG_RESET = 30,
 	/** A cam table waits for the end of the cycle */
 	LEVELWIND_FLAG_CAM_QUEUED = 31,

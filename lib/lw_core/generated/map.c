@@ -939,7 +939,7 @@ const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT] = {
 	},
 	{
 		.address = 61463, .count = 1, .offset = offsetof(struct lw_bench, bench_hang),
-		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 4,
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 5,
 		.default_value = 0,
 	},
 	{

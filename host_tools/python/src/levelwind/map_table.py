@@ -565,13 +565,14 @@ class CamInterpolation(MapEnum):
 
 
 class BenchThread(MapEnum):
-    """Threads of the firmware that the bench can hang."""
+    """Threads of the firmware that the bench can hang, or break."""
 
     NONE = 0, "none", "None"
     SUPERVISOR = 1, "supervisor", "Supervisor"
     LIMITS = 2, "limits", "Limits thread"
     MODBUS = 3, "modbus", "Modbus thread"
     STORAGE = 4, "storage", "Storage work queue"
+    FAULT = 5, "fault", "Modbus thread, by a fault of the processor"
 
 
 class BenchRestart(MapEnum):
@@ -701,7 +702,7 @@ class Flag(MapEnum):
     WATCHDOG_RESET = (
         30,
         "watchdog_reset",
-        "The last restart was made by the watchdog: a part of the firmware had stopped",
+        "The last restart was made by the watchdog, or after a fault of the processor: a part of the firmware had stopped",
     )
     CAM_QUEUED = 31, "cam_queued", "A cam table waits for the end of the cycle"
 
@@ -1119,7 +1120,7 @@ POINTS: dict[str, Point] = {
             address=30,
             space="discrete",
             type="bit",
-            text="The last restart was made by the watchdog: a part of the firmware had stopped",
+            text="The last restart was made by the watchdog, or after a fault of the processor: a part of the firmware had stopped",
             block="discretes",
         ),
         Point(
@@ -3531,7 +3532,7 @@ POINTS: dict[str, Point] = {
             text="Writing a code hangs that thread; refused by the simulator, which has none",
             block="bench",
             min=0,
-            max=4,
+            max=5,
             default=0,
             writable=True,
             enum=BenchThread,

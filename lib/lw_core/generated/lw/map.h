@@ -537,7 +537,7 @@ enum lw_cam_interpolation {
 	LW_CAM_INTERPOLATION_TRAPEZOID = 1,
 };
 
-/** Threads of the firmware that the bench can hang */
+/** Threads of the firmware that the bench can hang, or break */
 enum lw_bench_thread {
 	/** None */
 	LW_BENCH_THREAD_NONE = 0,
@@ -549,6 +549,8 @@ enum lw_bench_thread {
 	LW_BENCH_THREAD_MODBUS = 3,
 	/** Storage work queue */
 	LW_BENCH_THREAD_STORAGE = 4,
+	/** Modbus thread, by a fault of the processor */
+	LW_BENCH_THREAD_FAULT = 5,
 };
 
 /** What the simulated machine saw when the watchdog restarted the controller */
@@ -678,7 +680,10 @@ enum lw_flag {
 	LW_FLAG_LOCKED = 28,
 	/** Line settings are on trial: any valid request to this unit confirms them */
 	LW_FLAG_LINE_TRIAL = 29,
-	/** The last restart was made by the watchdog: a part of the firmware had stopped */
+	/**
+	 * The last restart was made by the watchdog, or after a fault of the processor: a part of
+	 * the firmware had stopped
+	 */
 	LW_FLAG_WATCHDOG_RESET = 30,
 	/** A cam table waits for the end of the cycle */
 	LW_FLAG_CAM_QUEUED = 31,
