@@ -132,6 +132,7 @@ static int supervise(void)
 int main(void)
 {
 	struct k_timer ticks;
+	int added;
 	int ret;
 
 	interrupts_start();
@@ -139,10 +140,11 @@ int main(void)
 	(void)modbus_let_go();
 	ret = watch_start();
 	if (ret == 0) {
-		ret = watch_add(WATCH_SUPERVISOR);
-	}
-	if (ret == 0) {
 		ret = start();
+		/* After the loading, which takes its time; also when the start has failed: then
+		 * nobody will report. */
+		added = watch_add(WATCH_SUPERVISOR);
+		ret = ret ? ret : added;
 	}
 	k_timer_init(&ticks, NULL, NULL);
 	k_timer_start(&ticks, K_USEC(LW_CONTROLLER_TICK_US), K_USEC(LW_CONTROLLER_TICK_US));

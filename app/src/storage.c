@@ -3,9 +3,11 @@
 #include <string.h>
 
 #include <zephyr/settings/settings.h>
+#include <zephyr/storage/flash_map.h>
 
 #include "app.h"
 #include "modbus.h"
+#include "settings_backend.h"
 #include "watch.h"
 
 #define TREE "levelwind"
@@ -15,6 +17,15 @@ static const char *const names[LW_STORE_SLOTS] = {
 	TREE "/parameters", TREE "/parameters_b", TREE "/journal",
 	TREE "/journal_b",  TREE "/cam",          TREE "/cam_b",
 };
+
+/* Of each pair both slots. */
+BUILD_ASSERT(FIXED_PARTITION_SIZE(storage_partition) / 2 >=
+		     2 * (SETTINGS_BACKEND_ENTRY_SIZE(LW_PARAM_RECORD_SIZE) +
+			  SETTINGS_BACKEND_ENTRY_SIZE(LW_STORE_JOURNAL_SIZE) +
+			  SETTINGS_BACKEND_ENTRY_SIZE(LW_STORE_CAM_SIZE)) +
+			     SETTINGS_BACKEND_ENTRY_SIZE(LW_STORE_SLOT_SIZE),
+	     "storage_partition is too small for what settings_backend.h asks for");
+BUILD_ASSERT(LW_STORE_SLOTS <= SETTINGS_BACKEND_VALUES_MAX);
 
 static K_THREAD_STACK_DEFINE(stack, 1536);
 static struct k_work_q queue;
@@ -50,15 +61,14 @@ static K_WORK_DELAYABLE_DEFINE(report_work, report);
 int storage_start(void)
 {
 	const struct k_work_queue_config config = {.name = "storage"};
-	const int ret = watch_add(WATCH_STORAGE);
+	const int ret = settings_subsys_init();
+	int added;
 
-	if (ret) {
-		return ret;
-	}
 	k_work_queue_start(&queue, stack, K_THREAD_STACK_SIZEOF(stack), APP_PRIORITY_STORAGE,
 			   &config);
+	added = watch_add(WATCH_STORAGE);
 	(void)k_work_schedule_for_queue(&queue, &report_work, K_NO_WAIT);
-	return settings_subsys_init();
+	return ret ? ret : added;
 }
 
 static int load_one(const char *key, size_t size, settings_read_cb read, void *context, void *param)

@@ -85,7 +85,10 @@ bool watch_has_restarted(void)
 
 int watch_add(enum watch_thread thread)
 {
-	channels[thread] = task_wdt_add(CONFIG_LW_WATCHDOG_TIMEOUT_MS, on_timeout, NULL);
+	channels[thread] =
+		task_wdt_add(thread == WATCH_STORAGE ? CONFIG_LW_WATCHDOG_STORAGE_TIMEOUT_MS
+						     : CONFIG_LW_WATCHDOG_TIMEOUT_MS,
+			     on_timeout, NULL);
 	return MIN(channels[thread], 0);
 }
 

@@ -1,8 +1,9 @@
 /**
  * @file
  * Every thread reports that it gets on with its work. A watchdog restarts the controller when one
- * has not for CONFIG_LW_WATCHDOG_TIMEOUT_MS, and the kernel's fatal errors do so at once; before
- * that the stepper loses its current and the line its driver.
+ * has not for CONFIG_LW_WATCHDOG_TIMEOUT_MS, the storage queue for
+ * CONFIG_LW_WATCHDOG_STORAGE_TIMEOUT_MS, and the kernel's fatal errors do so at once; before that
+ * the stepper loses its current and the line its driver.
  */
 #ifndef WATCH_H
 #define WATCH_H
