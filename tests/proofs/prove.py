@@ -115,7 +115,7 @@ def frama_c(proof: str, timeout_s: int, options: list[str], root: Path) -> subpr
             "-wp-rte",
             f"-wp-prover={PROVERS.get(proof, 'z3,cvc4')}",
             f"-wp-timeout={timeout_s}",
-            "-wp-par=1",
+            f"-wp-par={os.cpu_count()}",
             *options,
         ],
         cwd=root,
