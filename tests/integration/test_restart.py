@@ -216,7 +216,7 @@ def test_power_cuts_while_a_cam_table_comes_into_force(target: str, tmp_path: Pa
         changed = cut_power_after(
             running,
             *(line, flash, write_command(Command.CAM_ACTIVATE)),
-            chance.uniform(0, SAVE_TAKES_S / 3),
+            chance.uniform(0, SAVE_TAKES_S / 2),
         )
     print(f"{kept - torn} cuts before the writing, {torn} into it, {taken} after it")
     assert min(kept - torn, taken) > 0, (kept, torn, taken)
