@@ -1,7 +1,9 @@
 # Provides the target unity::framework (the Unity C test framework). UNITY_ROOT, a cache or environment variable, names
-# a folder with unity.c; without it, an installed Unity is used, and at last Unity is cloned from GitHub.
+# a folder with unity.c; without it, what `./dev` has fetched into build/unity or an installed Unity is used, and at last
+# Unity is cloned from GitHub.
 set(UNITY_ROOT "" CACHE PATH "Folder with the source of the Unity test framework")
-find_path(UNITY_SOURCE_DIR unity.c HINTS ${UNITY_ROOT} ENV UNITY_ROOT PATH_SUFFIXES src NO_DEFAULT_PATH NO_CACHE)
+find_path(UNITY_SOURCE_DIR unity.c HINTS ${UNITY_ROOT} ENV UNITY_ROOT PATHS ${PROJECT_SOURCE_DIR}/build/unity
+  PATH_SUFFIXES src NO_DEFAULT_PATH NO_CACHE)
 
 if(NOT UNITY_SOURCE_DIR)
   find_package(unity CONFIG QUIET)

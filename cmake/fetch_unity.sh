@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # Fetch the source of the Unity test framework into folder $1.
 #
 # No Debian release packages Unity, but the source of cjson carries it, so it comes through the same signed archive as

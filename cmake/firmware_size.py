@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Print where the flash and RAM of a firmware go. Fails if the image is larger than it may be."""
 
 import argparse

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pieces of C source that the core's and the client's generated files share."""
 
 import json
@@ -21,6 +22,7 @@ BIT_ENUMS = {FLAG: "flag", LAUNCH_INHIBIT: "launch_inhibit_bit"}
 
 def header_comment(purpose: str) -> str:
     return (
+        "/* SPDX-License-Identifier: Apache-2.0 */\n"
         "/*\n"
         f" * {purpose}\n"
         " * Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py\n"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The map of the C client for panels: host_tools/c/generated. It has nothing of the bench."""
 
 from c_text import (
@@ -11,7 +12,7 @@ from c_text import (
     string,
     struct,
 )
-from map_model import FLAG, LAUNCH_INHIBIT, Block, Enum, Map, Point, Value
+from map_model import Block, Enum, Map, Point, Value
 
 DECLARATIONS = """\
 /** One value of an enumeration, or one bit number of a bit field */
@@ -81,7 +82,7 @@ def map_h(map_: Map) -> str:
     ]
     for enum_ in _enums(map_):
         parts += ["\n", enum(f"levelwind_{enum_.name}", enum_.text, enum_.values)]
-    flag_text = "Discrete inputs, and bit numbers of levelwind_status.flags"
+    flag_text = "Discrete inputs; bit n of levelwind_status.flags is n, of flags_2 32 + n"
     inhibit_text = "Bit numbers of levelwind_status.launch_inhibit"
     block_values = [Value(i, block.name, block.text) for i, block in enumerate(blocks)]
     parts += [
@@ -148,7 +149,7 @@ def _row(block: Block, point: Point, map_: Map) -> str:
     values = map_.values(point)
     if values:
         fields += [
-            f".values = {point.enum or point.bits}_values",
+            f".values = {point.enum or point.name}_values",
             f".value_count = {len(values)}",
         ]
     return initializer(fields)
@@ -161,7 +162,9 @@ def map_c(map_: Map) -> str:
         '#include "levelwind_map.h"\n',
     ]
     parts += [_value_array(enum_.name, enum_.values) for enum_ in _enums(map_)]
-    parts += [_value_array(FLAG, map_.flags), _value_array(LAUNCH_INHIBIT, map_.launch_inhibit)]
+    parts += [
+        _value_array(point.name, map_.values(point)) for point in _status(map_).points if point.bits
+    ]
     parts.append("\n")
     parts += [allowed_array(point) for block in blocks for point in block.points]
     parts.append("\nconst struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {\n")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The core's tables: lib/lw_core/generated."""
 
 from c_text import (
@@ -11,9 +12,10 @@ from c_text import (
     string,
     struct,
 )
-from map_model import Block, Map, Point
+from map_model import FLAGS_EACH, Block, Map, Point
 
-STRUCT_NOTE = "One member for each point, in the memory type of lw/point.h."
+FLAG_TEXT = "Discrete inputs; bit n of lw_status.flags is n, of lw_status.flags_2 32 + n"
+STRUCT_NOTE = "One member for each point, in the memory type of lw/map/point.h."
 
 
 def _address_defines(map_: Map) -> str:
@@ -57,7 +59,8 @@ def map_h(map_: Map) -> str:
     ]
     parts = [
         header_comment("The Modbus map: enumerations, structs, addresses, limits and defaults."),
-        '#ifndef LW_MAP_H\n#define LW_MAP_H\n\n#include <stdint.h>\n\n#include "lw/point.h"\n\n',
+        "#ifndef LW_MAP_H\n#define LW_MAP_H\n\n",
+        '#include <stdint.h>\n\n#include "lw/map/point.h"\n\n',
         "/* Product identification, and what the register self_test reads. */\n",
         defines(product),
     ]
@@ -65,7 +68,7 @@ def map_h(map_: Map) -> str:
         parts += ["\n", enum(f"lw_{e.name}", e.text, e.values)]
     parts += [
         "\n",
-        enum("lw_flag", "Discrete inputs, and bit numbers of lw_status.flags", map_.flags),
+        enum("lw_flag", FLAG_TEXT, map_.flags),
         "\n",
         enum(
             "lw_launch_inhibit_bit",
@@ -130,7 +133,12 @@ def _row(block: Block, point: Point) -> str:
 
 
 def _bit_row(address: int, flags: str) -> str:
-    fields = [f".address = {address}", ".count = 1", f".offset = {address}", ".type = LW_TYPE_BIT"]
+    fields = [
+        f".address = {address}",
+        ".count = 1",
+        f".offset = {address % FLAGS_EACH}",
+        ".type = LW_TYPE_BIT",
+    ]
     return initializer(fields + ([f".flags = {flags}", ".max = 1"] if flags else []))
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """For integrators: doc/registers.md and the tag list modbus_map/tags.csv."""
 
 import csv
@@ -122,7 +123,8 @@ def registers_md(map_: Map) -> str:
     parts.append(_table(["address", "ref", "name", "meaning"], rows))
     parts.append(
         f"\n## Discrete inputs\n\n### {FLAG}\n\n"
-        "The same bits stand in the input registers `flags`, bit number = address.\n\n"
+        "The same bits stand in the input registers `flags`, bit number = address, and `flags_2`, "
+        "bit number = address - 32.\n\n"
     )
     rows = [
         [str(flag.value), reference("discrete", flag.value), f"`{flag.name}`", flag.text]

@@ -1,9 +1,10 @@
-"""For programs of integrators: JSON, Node-RED, Home Assistant, IEC 61131-3. All but the JSON leave
-out the bench, which hardware does not have.
+# SPDX-License-Identifier: Apache-2.0
+"""For programs of integrators: JSON, Node-RED, Home Assistant. All but the JSON leave out the
+bench, which hardware does not have.
 """
 
 import json
-import textwrap
+import math
 from dataclasses import asdict, dataclass
 
 import yaml
@@ -12,8 +13,22 @@ from map_model import Block, Map, Point, Value
 
 SOURCE = "Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py. Do not edit."
 READ_MAX = 125
-POLL_S = 1
 PORT = "/dev/ttyUSB0"
+BAUD = 19200
+CHARACTER_S = 11 / BAUD  # start, 8 data, parity, stop
+ANSWER_S = 0.020  # the slave, and the latency timer of a USB adapter
+LOAD_MAX = 0.75  # of the line, so that a repeated request does not delay the next cycle
+
+
+def _read_s(data_bytes: int, pause_ms: int) -> float:
+    """How long a read takes the line: request, answer, and the silence after each."""
+    request, answer = 8, 5 + data_bytes
+    return (request + answer + 7) * CHARACTER_S + ANSWER_S + pause_ms / 1000
+
+
+def _interval_s(cycle_s: float) -> int:
+    """Whole seconds for a cycle of reads."""
+    return math.ceil(cycle_s / LOAD_MAX)
 
 
 @dataclass(frozen=True)
@@ -117,6 +132,7 @@ const names = {names};
 msg.payload = Object.fromEntries(names.map((name, bit) => [name, msg.payload[bit]]));
 return msg;
 """
+_NODE_RED_PAUSE_MS = 10
 _TAB, _CLIENT = "levelwind_tab", "levelwind_client"
 
 
@@ -142,11 +158,12 @@ def _client(map_: Map) -> dict:
         "serialConnectionDelay": "100",
         "serialAsciiResponseStartDelimiter": "0x3A",
         "unit_id": "1",
-        "commandDelay": "10",
+        "commandDelay": str(_NODE_RED_PAUSE_MS),
         "clientTimeout": "1000",
         "reconnectOnTimeout": True,
         "reconnectTimeout": "2000",
-        "parallelUnitIdsAllowed": True,
+        # On one line a request must wait for the answer to the one before, whoever that is to.
+        "parallelUnitIdsAllowed": False,
     }
 
 
@@ -166,7 +183,7 @@ def _poll(name: str, kind: str, address: int, count: int, func: str, y: int) -> 
             "dataType": kind,
             "adr": str(address),
             "quantity": str(count),
-            "rate": str(POLL_S),
+            "rate": "",  # when all reads are known
             "rateUnit": "s",
             "delayOnStart": False,
             "startDelayTime": "",
@@ -222,11 +239,17 @@ def node_red_json(map_: Map) -> str:
         nodes += _poll(
             f"input_{run.first}", "InputRegister", run.first, run.count, func, 140 + 60 * row
         )
+    cycle_s = _read_s(math.ceil(len(map_.flags) / 8), _NODE_RED_PAUSE_MS)
+    cycle_s += sum(_read_s(2 * run.count, _NODE_RED_PAUSE_MS) for run in status_runs(map_))
+    for node in nodes:
+        if node["type"] == "modbus-read":
+            node["rate"] = str(_interval_s(cycle_s))
     return json.dumps(nodes, indent=1) + "\n"
 
 
 # ---- Home Assistant ------------------------------------------------------------------------------
 
+_HA_PAUSE_MS = 5  # between two requests; a frame ends after 2 ms of silence
 _HA_TYPES = {"u16": "uint16", "i16": "int16", "u32": "uint32", "i32": "int32", "i64": "int64"}
 
 
@@ -237,7 +260,6 @@ def _ha_common(name: str, address: int, input_type: str) -> dict:
         "slave": 1,
         "address": address,
         "input_type": input_type,
-        "scan_interval": POLL_S,
     }
 
 
@@ -250,123 +272,162 @@ def _ha_sensor(point: Point) -> dict:
 
 
 def home_assistant_yaml(map_: Map) -> str:
+    # Not self_test and the like, which never change: the live status and what happened.
+    points = [point for point in status_block(map_).points if point.address >= 100]
+    binary_sensors = [_ha_common(flag.name, flag.value, "discrete_input") for flag in map_.flags]
+    sensors = [_ha_sensor(point) for point in points]
+    cycle_s = len(binary_sensors) * _read_s(1, _HA_PAUSE_MS)
+    cycle_s += sum(_read_s(2 * point.words, _HA_PAUSE_MS) for point in points)
+    for entity in (*binary_sensors, *sensors):
+        entity["scan_interval"] = _interval_s(cycle_s)
     hub = {
         "name": "levelwind",
         "type": "serial",
         "method": "rtu",
         "port": PORT,
-        "baudrate": 19200,
+        "baudrate": BAUD,
         "bytesize": 8,
         "parity": "E",
         "stopbits": 1,
-        "binary_sensors": [
-            _ha_common(flag.name, flag.value, "discrete_input") for flag in map_.flags
-        ],
-        # Not self_test and the like, which never change: the live status and what happened.
-        "sensors": [
-            _ha_sensor(point) for point in status_block(map_).points if point.address >= 100
-        ],
+        "message_wait_milliseconds": _HA_PAUSE_MS,
+        "binary_sensors": binary_sensors,
+        "sensors": sensors,
     }
-    head = f"# {SOURCE}\n# For configuration.yaml; set port and slave (the unit id).\n"
+    head = f"""\
+# {SOURCE}
+# For configuration.yaml; set port and slave (the unit id).
+# Home Assistant asks for each entity by itself: these take {cycle_s:.1f} s of the line, at {BAUD}.
+# Delete what you do not show before you make scan_interval shorter.
+"""
     return head + yaml.safe_dump({"modbus": [hub]}, sort_keys=False)
 
 
-# ---- IEC 61131-3 structured text -----------------------------------------------------------------
+# ---- Telegraf, its plugin inputs.modbus ----------------------------------------------------------
 
-_ST_TYPES = {"u16": "UINT", "i16": "INT", "u32": "UDINT", "i32": "DINT", "i64": "LINT"}
-_ST_FROM = {"u16": "WORD", "i16": "WORD", "u32": "DWORD", "i32": "DWORD", "i64": "LWORD"}
-
-
-def _camel(name: str) -> str:
-    return "".join(part.capitalize() for part in name.split("_"))
+GATEWAY = "127.0.0.1:1502"  # levelwind serve --modbus-tcp, or levelwind sim --tcp
+_TELEGRAF_TYPES = {"u16": "UINT16", "i16": "INT16", "u32": "UINT32", "i32": "INT32", "i64": "INT64"}
 
 
-def _st_comment(text: str) -> str:
-    return text.replace("*)", "* )")
-
-
-def _st_enum(name: str, values: list[Value]) -> str:
-    prefix = f"LEVELWIND_{name.upper()}"
-    body = ",\n".join(f"    {prefix}_{value.name.upper()} := {value.value}" for value in values)
-    return f"TYPE Levelwind{_camel(name)} :\n(\n{body}\n) UINT;\nEND_TYPE\n"
-
-
-def _st_bits(name: str, values: list[Value]) -> str:
-    rows = "".join(
-        f"    LEVELWIND_{name.upper()}_{value.name.upper()} : UINT := {value.value};"
-        f" (* {_st_comment(value.text)} *)\n"
-        for value in values
-    )
-    return f"VAR_GLOBAL CONSTANT (* bit numbers of {name} *)\n{rows}END_VAR\n"
-
-
-def _st_struct(run: Run) -> str:
-    rows = "".join(
-        f"    {point.name} : {_ST_TYPES[point.type]};"
-        f" (* {_st_comment(point.text)}{f' [{point.unit}]' if point.unit else ''} *)\n"
-        for point in run.points
-    )
-    return f"TYPE LevelwindInput{run.first} :\nSTRUCT\n{rows}END_STRUCT\nEND_TYPE\n"
-
-
-def _st_value(point: Point, first: int) -> str:
-    """The words of a value put together, high word first."""
-    at = point.address - first
-    source = _ST_FROM[point.type]
-    if point.words == 1:
-        joined = f"words[{at}]"
-    else:
-        parts = []
-        for i in range(point.words):
-            shift = 16 * (point.words - 1 - i)
-            word = f"WORD_TO_{source}(words[{at + i}])"
-            parts.append(f"SHL({word}, {shift})" if shift else word)
-        joined = " OR ".join(parts)
-    return f"{source}_TO_{_ST_TYPES[point.type]}({joined})"
-
-
-def _st_function(run: Run) -> str:
-    name = f"LevelwindInput{run.first}"
-    rows = "".join(
-        f"{name}FromWords.{point.name} := {_st_value(point, run.first)};\n" for point in run.points
-    )
-    return (
-        f"(* FC04, address {run.first}, count {run.count} *)\n"
-        f"FUNCTION {name}FromWords : {name}\n"
-        f"VAR_INPUT\n    words : ARRAY[0..{run.count - 1}] OF WORD;\nEND_VAR\n"
-        f"{rows}END_FUNCTION\n"
-    )
-
-
-def _st_addresses(map_: Map) -> str:
-    rows = ""
-    for block in map_.blocks:
-        if block.bench:
-            continue
-        for point in block.points:
-            rows += (
-                f"    LEVELWIND_ADDRESS_{point.name.upper()} : UINT := {point.address};"
-                f" (* {block.space}, {point.type} *)\n"
-            )
-    for coil in map_.coils:
-        rows += f"    LEVELWIND_COIL_{coil.name.upper()} : UINT := {coil.address};\n"
-    return f"VAR_GLOBAL CONSTANT (* 0-based protocol addresses *)\n{rows}END_VAR\n"
-
-
-def structured_text(map_: Map) -> str:
-    head = f"""\
-{SOURCE} Modbus map of {map_.product["name"]}, version {map_.version}, for CODESYS and other
-IEC 61131-3 systems: addresses, enumerations, and for each run of input registers a structure and
-the function that fills it from the words as they were read."""
-    used = {point.enum for point in status_block(map_).points}
-    used |= {point.enum for block in map_.blocks if not block.bench for point in block.points}
-    parts = [
-        "(*\n" + "\n".join(textwrap.wrap(head, 96)) + "\n*)\n",
-        _st_addresses(map_),
-        _st_bits("flag", map_.flags),
-        _st_bits("launch_inhibit", map_.launch_inhibit),
+def telegraf_conf(map_: Map) -> str:
+    points = [point for point in status_block(map_).points if point.address >= 100]
+    flags = [f'    {{ address={f.value}, name="{f.name}" }},' for f in map_.flags]
+    values = [
+        f'    {{ address={p.address}, name="{p.name}", type="{_TELEGRAF_TYPES[p.type]}" }},'
+        for p in points
     ]
-    parts += [_st_enum(enum.name, enum.values) for enum in map_.enums.values() if enum.name in used]
-    for run in status_runs(map_):
-        parts += [_st_struct(run), _st_function(run)]
-    return "\n".join(parts)
+    return "\n".join(
+        [
+            f"# {SOURCE}",
+            "# Through `levelwind serve --modbus-tcp`, which leaves the line to others, too.",
+            "[[inputs.modbus]]",
+            '  name = "levelwind"',
+            f'  controller = "tcp://{GATEWAY}"',
+            '  timeout = "2s"',
+            '  configuration_type = "request"',
+            *_telegraf_request("discrete", flags),
+            *_telegraf_request("input", values),
+            "",
+        ]
+    )
+
+
+def _telegraf_request(register: str, fields: list[str]) -> list[str]:
+    return [
+        "  [[inputs.modbus.request]]",
+        "  slave_id = 1",
+        '  byte_order = "ABCD"',
+        f'  register = "{register}"',
+        '  measurement = "levelwind"',
+        "  fields = [",
+        *fields,
+        "  ]",
+    ]
+
+
+# ---- W3C Web of Things: a Thing Description with the Modbus binding ------------------------------
+
+_WOT_TYPES = {
+    "u16": "xsd:unsignedShort",
+    "i16": "xsd:short",
+    "u32": "xsd:unsignedInt",
+    "i32": "xsd:int",
+    "i64": "xsd:long",
+}
+
+
+def _wot_form(op: str, entity: str, function: str, kind: str, address: int, count: int) -> dict:
+    return {
+        "op": op,
+        "href": f"modbus+tcp://{GATEWAY}/1/{address}?quantity={count}",
+        "contentType": "application/octet-stream",
+        "modv:entity": entity,
+        "modv:function": function,
+        "modv:type": kind,
+        "modv:zeroBasedAddressing": True,
+        "modv:mostSignificantByte": True,
+        "modv:mostSignificantWord": True,
+    }
+
+
+def wot_td_json(map_: Map) -> str:
+    flags = {
+        flag.name: {
+            "type": "boolean",
+            "description": flag.text,
+            "readOnly": True,
+            "forms": [
+                _wot_form(
+                    "readproperty",
+                    "DiscreteInput",
+                    "readDiscreteInputs",
+                    "xsd:boolean",
+                    flag.value,
+                    1,
+                )
+            ],
+        }
+        for flag in map_.flags
+    }
+    values = {}
+    for point in status_block(map_).points:
+        values[point.name] = {
+            "type": "integer",
+            "description": point.text,
+            "readOnly": True,
+            **({"unit": point.unit} if point.unit else {}),
+            "forms": [
+                _wot_form(
+                    "readproperty",
+                    "InputRegister",
+                    "readInputRegisters",
+                    _WOT_TYPES[point.type],
+                    point.address,
+                    point.words,
+                )
+            ],
+        }
+    actions = {
+        coil.name: {
+            "description": coil.text,
+            "input": {"type": "boolean", "const": True},
+            "forms": [
+                _wot_form("invokeaction", "Coil", "writeSingleCoil", "xsd:boolean", coil.address, 1)
+            ],
+        }
+        for coil in map_.coils
+    }
+    document = {
+        "@context": [
+            "https://www.w3.org/2022/wot/td/v1.1",
+            {"modv": "https://www.w3.org/2019/wot/modbus#"},
+        ],
+        "@type": "Thing",
+        "id": "urn:levelwind:1",
+        "title": map_.product["name"],
+        "description": f"{SOURCE} Through `levelwind serve --modbus-tcp`; actions: --write-from.",
+        "securityDefinitions": {"nosec": {"scheme": "nosec"}},
+        "security": "nosec",
+        "properties": {**flags, **values},
+        "actions": actions,
+    }
+    return json.dumps(document, indent=1) + "\n"

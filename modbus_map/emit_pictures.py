@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pictures for the integrator's page, with the names and numbers of the map: doc/*.svg."""
 
 from html import escape
@@ -41,6 +42,7 @@ STATES = {
     "centring": (880, 330, ""),
     "centred": (880, 500, ""),
     "jogging": (560, 410, ""),
+    "reacquiring": (620, 660, ""),
     "off": (190, 440, "bad"),
     "fault": (330, 330, "bad"),
 }
@@ -68,6 +70,8 @@ TRANSITIONS = [
     ("M942 510H1128", 1035, 525, "middle", ("mode track, drum at rest",)),
     ("M1175 522V580H330V352", 720, 573, "middle", ("overspeed, los_limit",)),
     ("M1205 522V610H50V142", 720, 603, "middle", ("stop, drum turning",)),
+    ("M36 142V660H558", 300, 652, "middle", ("reacquire, drum turning",)),
+    ("M682 660H1235V522", 960, 652, "middle", ("limit switch triggered",)),
 ]
 NOTES = [
     (
@@ -78,6 +82,7 @@ NOTES = [
             "if indexed, else where it came from",
         ),
     ),
+    (620, 698, ("no switch, wrong switch, overtravel: fault; stop: unindexed",)),
     (190, 478, ("mode off, from every state;", "another mode: to unindexed", "(or fault)")),
 ]
 
@@ -122,7 +127,7 @@ def states_svg(map_: Map) -> str:
         )
     for note_x, note_y, lines in NOTES:
         body.append(_text(note_x, note_y, lines, "middle"))
-    return _document(1340, 640, "States of the controller (input register state)", "".join(body))
+    return _document(1340, 710, "States of the controller (input register state)", "".join(body))
 
 
 def _point(map_: Map, name: str) -> Point:

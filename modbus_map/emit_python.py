@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The laptop tool's table: host_tools/python/src/levelwind/map_table.py."""
 
 import json
@@ -5,19 +6,21 @@ import json
 from map_model import FLAG, LAUNCH_INHIBIT, Block, Coil, Map, Point, Value
 
 COLUMNS = 100
-PREAMBLE = '''"""The Modbus map: every point, enumeration, limit and default.
+PREAMBLE = '''# SPDX-License-Identifier: Apache-2.0
+"""The Modbus map: every point, enumeration, limit and default.
 
 Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
 Do not edit.
 """
 # ruff: noqa: E501
 
+import builtins
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Literal
 
 Space = Literal["coil", "discrete", "holding", "input"]
-Type = Literal["bit", "u16", "i16", "u32", "i32", "i64"]
+PointType = Literal["bit", "u16", "i16", "u32", "i32", "i64"]
 
 
 class MapEnum(IntEnum):
@@ -26,7 +29,7 @@ class MapEnum(IntEnum):
     label: str
     text: str
 
-    def __new__(cls, value: int, label: str, text: str) -> "MapEnum":
+    def __new__(cls, value: int, label: str = "", text: str = "") -> "MapEnum":
         member = int.__new__(cls, value)
         member._value_ = value
         member.label = label
@@ -42,7 +45,7 @@ class Point:
     name: str
     address: int
     space: Space
-    type: Type
+    type: PointType
     text: str
     block: str
     words: int = 1  # registers of one element
@@ -57,8 +60,9 @@ class Point:
     command: bool = False  # writing a value other than 0 runs a command
     reindex: bool = False  # a change makes the index invalid
     secret: bool = False  # reads max if it is not 0; writing max keeps it
-    enum: type[MapEnum] | None = None  # names of the values
-    bits: type[MapEnum] | None = None  # names of the bits, by bit number
+    enum: "builtins.type[MapEnum] | None" = None  # names of the values
+    bits: "builtins.type[MapEnum] | None" = None  # names of the bits, by bit number
+    bits_from: int = 0  # which of them bit 0 is
     mirrors: dict[str, int] = field(default_factory=dict)  # input register addresses by copy
 
 
@@ -138,6 +142,8 @@ def _fields(point: Point, block: Block) -> list[str]:
         fields.append(f"enum={class_name(point.enum)}")
     if point.bits:
         fields.append(f"bits={class_name(point.bits)}")
+    if point.bits_from:
+        fields.append(f"bits_from={point.bits_from}")
     if block.mirrors:
         mirrors = [f'"{m.name}": {point.address + m.address_offset}' for m in block.mirrors]
         fields.append(f"mirrors={{{', '.join(mirrors)}}}")
@@ -164,7 +170,9 @@ def _coil_fields(coil: Coil) -> list[str]:
 def map_table(map_: Map) -> str:
     parts = [PREAMBLE]
     parts += [_enum(enum.name, enum.text, enum.values) for enum in map_.enums.values()]
-    parts.append(_enum(FLAG, "Discrete inputs, and bit numbers of the point flags", map_.flags))
+    parts.append(
+        _enum(FLAG, "Discrete inputs; bit n of the point flags is n, of flags_2 32 + n", map_.flags)
+    )
     parts.append(
         _enum(LAUNCH_INHIBIT, "Bit numbers of the point launch_inhibit", map_.launch_inhibit)
     )

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Generate everything that is made from the Modbus map, modbus_map/registers.yaml.
 
 python3 modbus_map/generate.py           write the files
@@ -14,6 +15,7 @@ import emit_core
 import emit_documents
 import emit_integrations
 import emit_pictures
+import emit_plc
 import emit_python
 from map_model import MapError, load
 
@@ -31,7 +33,10 @@ OUTPUTS = {
     "modbus_map/tags.json": emit_integrations.map_json,
     "modbus_map/tags_node_red.json": emit_integrations.node_red_json,
     "modbus_map/tags_home_assistant.yaml": emit_integrations.home_assistant_yaml,
-    "modbus_map/tags_iec61131.st": emit_integrations.structured_text,
+    "modbus_map/tags_telegraf.conf": emit_integrations.telegraf_conf,
+    "modbus_map/tags_wot_td.json": emit_integrations.wot_td_json,
+    "modbus_map/tags_iec61131.st": emit_plc.structured_text,
+    "modbus_map/tags_plcopen.xml": emit_plc.plcopen_xml,
 }
 
 

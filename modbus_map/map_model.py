@@ -1,8 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Modbus map as Python objects: reads registers.yaml and refuses what is inconsistent."""
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -21,6 +22,7 @@ WRITE_RANGE = {
 }
 LAUNCH_INHIBIT = "launch_inhibit"
 FLAG = "flag"
+FLAGS_EACH = 32  # in a register pair of flags
 
 
 class MapError(Exception):
@@ -70,6 +72,7 @@ class Point:
     default: int = 0
     enum: str | None = None
     bits: str | None = None  # FLAG or LAUNCH_INHIBIT
+    bits_from: int = 0  # which of them bit 0 is
     unit: str = ""
     scope: str = ""
     reindex: bool = False
@@ -130,7 +133,12 @@ class Map:
         """The named values, or named bits, of a point; empty for a number."""
         if point.enum:
             return self.enums[point.enum].values
-        return {FLAG: self.flags, LAUNCH_INHIBIT: self.launch_inhibit}.get(point.bits or "", [])
+        bits = {FLAG: self.flags, LAUNCH_INHIBIT: self.launch_inhibit}.get(point.bits or "", [])
+        return [
+            replace(bit, value=bit.value - point.bits_from)
+            for bit in bits
+            if point.bits != FLAG or point.bits_from <= bit.value < point.bits_from + FLAGS_EACH
+        ]
 
 
 def _limits(raw: dict, enums: dict[str, Enum]) -> tuple[int, int]:
@@ -239,6 +247,14 @@ def _bit_errors(map_: Map) -> Iterator[str]:
             yield f"coil {coil.name}: there is no command {coil.command}"
 
 
+def _flag_errors(map_: Map) -> Iterator[str]:
+    pairs = [point for block in map_.blocks for point in block.points if point.bits == FLAG]
+    shown = {pair.bits_from + bit.value for pair in pairs for bit in map_.values(pair)}
+    for flag in map_.flags:
+        if pairs and flag.value not in shown:
+            yield f"discrete {flag.name}: stands in no register pair of flags"
+
+
 def _point_errors(point: Point, map_: Map) -> Iterator[str]:
     if point.bits and len(map_.values(point)) > 16 * point.words:
         yield f"{point.name}: its bits do not fit into a {point.type}"
@@ -295,7 +311,7 @@ def check(raw: dict) -> Map:
     if found:
         raise MapError(*found)
     map_ = _parse(raw)
-    found = [*_name_errors(map_), *_bit_errors(map_), *_address_errors(map_)]
+    found = [*_name_errors(map_), *_bit_errors(map_), *_address_errors(map_), *_flag_errors(map_)]
     for block in map_.blocks:
         for point in block.points:
             found += _point_errors(point, map_)

@@ -1,13 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
 """What integrators import says what the map says, and can be read by what it is for."""
 
 import csv
 import json
 import re
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
+import jsonschema
+import pytest
 import yaml
-from blark.parse import parse_source_code
 
 FOLDER = Path(__file__).resolve().parent
 sys.path.insert(0, str(FOLDER))
@@ -99,6 +103,7 @@ def test_node_red_flow() -> None:
 
 # https://www.home-assistant.io/integrations/modbus/
 HA_HUB = {"name", "type", "method", "port", "baudrate", "bytesize", "parity", "stopbits"}
+HA_HUB |= {"message_wait_milliseconds"}
 HA_ENTITY = {"name", "unique_id", "slave", "address", "input_type", "scan_interval"}
 HA_TYPES = {(1, False): "uint16", (1, True): "int16", (2, False): "uint32", (2, True): "int32"}
 HA_TYPES[4, True] = "int64"
@@ -126,85 +131,150 @@ def test_home_assistant() -> None:
         assert entity.get("unit_of_measurement", "") == point.unit
 
 
-# ---- structured text -----------------------------------------------------------------------------
+# ---- what polling asks of the line ---------------------------------------------------------------
 
-ST = read("tags_iec61131.st")
-NAME = r"[A-Za-z_][A-Za-z0-9_]*"
-ST_LINES = (
-    r"VAR_GLOBAL CONSTANT \(\* [^*]* \*\)|VAR_INPUT|STRUCT|END_(VAR|STRUCT|TYPE|FUNCTION)",
-    rf"TYPE {NAME} :|FUNCTION {NAME} : {NAME}|\(|\) UINT;|\(\* FC04, address \d+, count \d+ \*\)",
-    rf"    {NAME} : UINT := \d+;( \(\* .* \*\))?",
-    rf"    {NAME} : (UINT|INT|UDINT|DINT|LINT);( \(\* .* \*\))?",
-    r"    words : ARRAY\[0\.\.\d+\] OF WORD;",
-    rf"    {NAME} := \d+,?",
-    rf"{NAME}\.{NAME} := (WORD|DWORD|LWORD)_TO_(UINT|INT|UDINT|DINT|LINT)\(.*\);",
-)
+BITS_OF_A_CHARACTER = 11  # 8E1
+SLAVE_S = 0.005  # until it answers
+USB_ADAPTER_S = 0.016  # the latency timer of most of them, as they are sold
 
 
-def st_code() -> str:
-    """Without the comment at the top."""
-    return ST.partition("*)\n")[2]
+def transaction_s(function: int, count: int, baud: int) -> float:
+    """One read on the wire: request and answer, each ended by 3.5 characters of silence."""
+    unit, code, crc = 1, 1, 2
+    request = unit + code + 2 + 2 + crc
+    answer = unit + code + 1 + (-(-count // 8) if function in (1, 2) else 2 * count) + crc
+    return (request + answer + 7) * BITS_OF_A_CHARACTER / baud + SLAVE_S + USB_ADAPTER_S
 
 
-def test_structured_text_has_no_other_lines() -> None:
-    for line in st_code().splitlines():
-        assert not line or any(re.fullmatch(form, line) for form in ST_LINES), line
-        assert line.count("(*") == line.count("*)") <= 1
+def test_a_cycle_of_home_assistant_fits_the_line() -> None:
+    (hub,) = yaml.safe_load(read("tags_home_assistant.yaml"))["modbus"]
+    wait_s = hub.get("message_wait_milliseconds", 30) / 1000  # that is what it takes by itself
+    words = {name: count for (count, _), name in HA_TYPES.items()}
+    entities = [(2, 1, e["scan_interval"]) for e in hub["binary_sensors"]]
+    entities += [(4, words[e["data_type"]], e["scan_interval"]) for e in hub["sensors"]]
+    cycle_s = sum(transaction_s(f, n, hub["baudrate"]) + wait_s for f, n, _ in entities)
+    assert cycle_s < 0.8 * min(interval_s for *_, interval_s in entities)
+    assert max(interval_s for *_, interval_s in entities) <= 15  # and is of use
 
 
-def test_structured_text_can_be_parsed() -> None:
-    """One line of each form in each section: the parser takes a minute for all."""
-    sections = st_code().strip().split("\n\n")
-    forms: set[str] = set()
-    parsed = 0
-    for section in sections:
-        kept = []
-        for line in section.splitlines():
-            code = re.sub(r"\(\*.*?\*\)", "", line)
-            form = re.sub(r"LEVELWIND_\w+|(?<=\.)\w+|^    \w+", "N", re.sub(r"\d+", "0", code))
-            if form not in forms or not line.startswith((" ", "Levelwind")):
-                kept.append(line)
-            forms.add(form)
-        text = "\n".join(kept).replace(",\n)", "\n)")
-        if len(kept) > 5 or parsed == 0:
-            assert parse_source_code(text).exception is None, text
-            parsed += 1
-    assert parsed > 3
+def test_a_cycle_of_node_red_fits_the_line() -> None:
+    nodes = json.loads(read("tags_node_red.json"))
+    (client,) = (n for n in nodes if n["type"] == "modbus-client")
+    reads = [n for n in nodes if n["type"] == "modbus-read"]
+    assert {n["rateUnit"] for n in reads} == {"s"}
+    cycle_s = sum(
+        transaction_s(
+            {"Input": 2, "InputRegister": 4}[n["dataType"]],
+            int(n["quantity"]),
+            int(client["serialBaudrate"]),
+        )
+        + int(client["commandDelay"]) / 1000
+        for n in reads
+    )
+    assert cycle_s < 0.8 * min(int(n["rate"]) for n in reads)
 
 
-def test_the_parser_finds_mistakes() -> None:
-    wrong = "TYPE A :\nSTRUCT\n    x UINT;\nEND_STRUCT\nEND_TYPE\n"
-    assert parse_source_code(wrong).exception is not None
+def test_node_red_asks_one_unit_of_a_line_at_a_time() -> None:
+    for node in json.loads(read("tags_node_red.json")):
+        if node["type"] == "modbus-client":
+            assert node["clienttype"] == "serial"
+            assert node["parallelUnitIdsAllowed"] is False
+            assert node["bufferCommands"] is True  # each waits in its queue
 
 
-def test_structured_text_fits_the_map() -> None:
-    addresses = dict(re.findall(r"LEVELWIND_ADDRESS_(\w+) : UINT := (\d+);", ST))
-    expected = {n.upper(): str(p.address) for n, (b, p) in POINTS.items() if not b.bench}
-    assert addresses == expected
-    coils = dict(re.findall(r"LEVELWIND_COIL_(\w+) : UINT := (\d+);", ST))
-    assert coils == {c.name.upper(): str(c.address) for c in MAP.coils}
-    seen = set()
-    for first, count, body in re.findall(
-        r"\(\* FC04, address (\d+), count (\d+) \*\)\n(.*?)END_FUNCTION", ST, re.S
-    ):
-        run = range(int(first), int(first) + int(count))
-        inside = input_registers(run)
-        assert f"ARRAY[0..{len(run) - 1}]" in body
-        for name, value in re.findall(rf"FromWords\.({NAME}) := (.*);", body):
-            point = inside[name]
-            words = [int(w) for w in re.findall(r"words\[(\d+)\]", value)]
-            shifts = [int(s) for s in re.findall(r", (\d+)\)", value)]
-            start = point.address - run.start
-            assert words == list(range(start, start + point.words))
-            assert shifts == [16 * i for i in range(point.words - 1, 0, -1)]
-            target = {"u": "U", "i": ""}[point.type[0]]
-            target += {1: "INT", 2: "DINT", 4: "LINT"}[point.words]
-            assert re.match(rf"\w+_TO_{target}\(", value)
-            assert re.search(rf"^    {name} : {target};", ST, re.M)
-            seen.add(name)
-    assert seen == {p.name for p in STATUS.points}
-    for enum in MAP.enums.values():
-        for value in enum.values:
-            member = f"    LEVELWIND_{enum.name.upper()}_{value.name.upper()} := "
-            if member in ST:
-                assert re.search(rf"^{re.escape(member)}{value.value},?$", ST, re.M)
+# ---- over Modbus TCP -----------------------------------------------------------------------------
+
+TELEGRAF_TYPES = {
+    "UINT16": (1, False),
+    "INT16": (1, True),
+    "UINT32": (2, False),
+    "INT32": (2, True),
+    "INT64": (4, True),
+}
+WOT_TYPES = {
+    "xsd:unsignedShort": (1, False),
+    "xsd:short": (1, True),
+    "xsd:unsignedInt": (2, False),
+    "xsd:int": (2, True),
+    "xsd:long": (4, True),
+}
+NODE_WOT = "@node-wot/td-tools@0.9.0"
+
+
+def test_telegraf() -> None:
+    tomllib = pytest.importorskip("tomllib", reason="Python 3.11")
+    (plugin,) = tomllib.loads(read("tags_telegraf.conf"))["inputs"]["modbus"]
+    assert plugin["configuration_type"] == "request"
+    assert plugin["controller"].startswith("tcp://")
+    discrete, registers = plugin["request"]
+    for request in (discrete, registers):
+        assert request["byte_order"] == "ABCD"  # high word first, high byte first
+        assert request["slave_id"] == 1
+    assert {f["name"]: f["address"] for f in discrete["fields"]} == {
+        flag.name: flag.value for flag in MAP.flags
+    }
+    told = {field["name"]: field for field in registers["fields"]}
+    assert len(told) == len(registers["fields"])
+    assert told.keys() == {p.name for p in STATUS.points if p.address >= 100}
+    for name, field in told.items():
+        assert field["address"] == POINTS[name][1].address
+        assert TELEGRAF_TYPES[field["type"]] == BITS[POINTS[name][1].type]
+
+
+def test_thing_description() -> None:
+    thing = json.loads(read("tags_wot_td.json"))
+    flags = {flag.name: flag.value for flag in MAP.flags}
+    assert thing["properties"].keys() == flags.keys() | {point.name for point in STATUS.points}
+    for name, told in thing["properties"].items():
+        (form,) = told["forms"]
+        unit, address, count = re.fullmatch(
+            r"modbus\+tcp://[\d.]+:\d+/(\d+)/(\d+)\?quantity=(\d+)", form["href"]
+        ).groups()
+        assert (unit, told["readOnly"], form["op"]) == ("1", True, "readproperty")
+        if name in flags:
+            assert (int(address), int(count)) == (flags[name], 1)
+            assert form["modv:function"] == "readDiscreteInputs"
+        else:
+            point = POINTS[name][1]
+            assert (int(address), int(count)) == (point.address, point.words)
+            assert WOT_TYPES[form["modv:type"]] == BITS[point.type]
+            assert told.get("unit", "") == point.unit
+    coils = {coil.name: coil.address for coil in MAP.coils}
+    assert {
+        name: int(action["forms"][0]["href"].split("/")[-1].partition("?")[0])
+        for name, action in thing["actions"].items()
+    } == coils
+
+
+def test_thing_description_by_node_wot() -> None:
+    """By the standard's own schema, and by the library that a consumer would use."""
+    if not shutil.which("npm"):
+        pytest.skip("no npm")
+    folder = FOLDER.parent / "build" / "npm"
+    if not (folder / "node_modules" / "@node-wot").is_dir():
+        folder.mkdir(parents=True, exist_ok=True)
+        done = subprocess.run(
+            ["npm", "install", "--silent", "--no-audit", "--no-fund", "--prefix", folder, NODE_WOT],
+            capture_output=True, timeout=300, check=False,
+        )  # fmt: skip
+        if done.returncode != 0:
+            pytest.skip(f"npm cannot fetch {NODE_WOT}")
+    modules = folder / "node_modules"
+    schema = modules / "wot-thing-description-types" / "schema" / "td-json-schema-validation.json"
+    jsonschema.validate(
+        json.loads(read("tags_wot_td.json")), json.loads(schema.read_text(encoding="utf-8"))
+    )
+    script = """
+        const { parseTD } = require("@node-wot/td-tools");
+        const thing = parseTD(require("fs").readFileSync(process.argv[1], "utf8"));
+        console.log(Object.keys(thing.properties).length, Object.keys(thing.actions).length);
+    """
+    done = subprocess.run(
+        ["node", "-e", script, FOLDER / "tags_wot_td.json"],
+        cwd=folder, capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == [
+        str(len(MAP.flags) + len(STATUS.points)),
+        str(len(MAP.coils)),
+    ]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mistakes in registers.yaml are found, and the message names them."""
 
 import copy
@@ -157,7 +158,7 @@ def test_a_drifted_file_is_named(tmp_path: Path) -> None:
 
 def test_a_state_that_the_picture_does_not_show_is_found() -> None:
     raw = copy.deepcopy(RAW)
-    raw["enums"]["state"]["values"]["waiting"] = {"value": 13, "text": "New"}
+    raw["enums"]["state"]["values"]["waiting"] = {"value": 99, "text": "New"}
     with pytest.raises(map_model.MapError, match="differ: waiting"):
         emit_pictures.states_svg(map_model.check(raw))
 

@@ -1,22 +1,19 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
- * The simulator: a world on a real or virtual clock, its Modbus slave on a pseudo terminal or a
- * serial port. One thread. It is not Zephyr; it runs the same core.
+ * The simulator: a world on a real or virtual clock, its Modbus slave on a pseudo terminal, a
+ * serial port or TCP. One thread. It is not Zephyr; it runs the same core.
  */
-#define _GNU_SOURCE
-
 #include <errno.h>
-#include <fcntl.h>
 #include <getopt.h>
-#include <poll.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
+#include "host.h"
 #include "port.h"
+#include "tcp.h"
 #include "world.h"
 
 /** Virtual time simulated between two looks at the port. */
@@ -32,23 +29,27 @@
 #define PTY_SILENCE_US 2000u
 
 struct options {
-	const char *port;
+	const char *port; /**< NULL: none */
+	const char *tcp;  /**< NULL: none */
 	const char *storage;
 	const char *trace;
 	double speed; /**< 0: as fast as it can */
 	uint64_t seed;
 	int32_t carriage_um;
 	uint8_t unit_id;
+	uint32_t silence_us; /**< 0: by the port */
 };
 
 struct simulator {
 	struct options options;
 	struct lw_port port;
+	struct lw_tcp tcp;
 	int storage_fd;
 	FILE *trace;
 	int64_t traced_edges;
 	uint32_t traced_steps;
 	int traced_state;
+	uint64_t looked_ns; /**< when the port was last looked at, 0: never */
 	struct lw_world world;
 };
 
@@ -59,27 +60,27 @@ static void on_signal(int number)
 	stop_signal = number;
 }
 
-static uint64_t real_ns(void)
-{
-	struct timespec now;
-
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-}
-
 static void usage(FILE *stream)
 {
-	fputs("usage: lw_sim --port PATH [--speed FACTOR|max] [--seed N] [--storage FILE]\n"
-	      "              [--trace FILE.csv] [--unit N] [--carriage-um N]\n"
+	fputs("usage: lw_sim --port PATH | --tcp ADDRESS:PORT [--speed FACTOR|max] [--seed N] \n"
+	      "              [--storage FILE] [--trace FILE.csv] [--unit N] [--carriage-um N]\n"
+	      "              [--frame-silence-ms N]\n"
 	      "\n"
 	      "  --port PATH      serial port to answer on, or where to make a link to a pseudo "
 	      "terminal\n"
+	      "  --tcp ADDRESS:PORT\n"
+	      "                   serve Modbus TCP there instead; port 0: any that is free\n"
 	      "  --speed FACTOR   virtual seconds per real second (default 1), or max\n"
 	      "  --seed N         seed of everything random in the plant (default 1)\n"
 	      "  --storage FILE   keeps parameters, event log and counters (default: in memory)\n"
 	      "  --trace FILE     write one line per millisecond in which something moves\n"
 	      "  --unit N         Modbus unit id (default: the stored one, at first 1)\n"
-	      "  --carriage-um N  where the carriage stands at first (default 0)\n",
+	      "  --carriage-um N  where the carriage stands at first (default 0)\n"
+	      "  --frame-silence-ms N\n"
+	      "                   silence that ends a frame (default: by the baud rate, 2 on a "
+	      "pseudo\n"
+	      "                   terminal). At a USB adapter more than its latency timer, 1 to 16 "
+	      "ms\n",
 	      stream);
 }
 
@@ -90,7 +91,7 @@ static bool parse_number(const char *name, const char *text, long long min, long
 	char *end;
 
 	errno = 0;
-	*value = strtoll(text, &end, 0);
+	*value = strtoll(text, &end, 10);
 	if (errno != 0 || *text == '\0' || *end != '\0' || *value < min || *value > max) {
 		fprintf(stderr, "lw_sim: --%s %s: must be a number from %lld to %lld\n", name, text,
 			min, max);
@@ -119,12 +120,14 @@ static bool parse_options(int argc, char **argv, struct options *options)
 {
 	static const struct option names[] = {
 		{"port", required_argument, NULL, 'p'},
+		{"tcp", required_argument, NULL, 'n'},
 		{"speed", required_argument, NULL, 's'},
 		{"seed", required_argument, NULL, 'r'},
 		{"storage", required_argument, NULL, 'f'},
 		{"trace", required_argument, NULL, 't'},
 		{"unit", required_argument, NULL, 'u'},
 		{"carriage-um", required_argument, NULL, 'c'},
+		{"frame-silence-ms", required_argument, NULL, 'i'},
 		{"help", no_argument, NULL, 'h'},
 		{NULL, 0, NULL, 0},
 	};
@@ -136,6 +139,9 @@ static bool parse_options(int argc, char **argv, struct options *options)
 		switch (name) {
 		case 'p':
 			options->port = optarg;
+			break;
+		case 'n':
+			options->tcp = optarg;
 			break;
 		case 's':
 			if (!parse_speed(optarg, &options->speed)) {
@@ -166,6 +172,12 @@ static bool parse_options(int argc, char **argv, struct options *options)
 			}
 			options->carriage_um = (int32_t)number;
 			break;
+		case 'i':
+			if (!parse_number("frame-silence-ms", optarg, 1, 1000, &number)) {
+				return false;
+			}
+			options->silence_us = (uint32_t)number * 1000;
+			break;
 		case 'h':
 			usage(stdout);
 			exit(EXIT_SUCCESS);
@@ -174,7 +186,7 @@ static bool parse_options(int argc, char **argv, struct options *options)
 			return false;
 		}
 	}
-	if (options->port == NULL || optind != argc) {
+	if ((options->port == NULL) == (options->tcp == NULL) || optind != argc) {
 		usage(stderr);
 		return false;
 	}
@@ -182,32 +194,57 @@ static bool parse_options(int argc, char **argv, struct options *options)
 }
 
 /** Where a slot stands in the storage file. */
-static off_t slot_offset(unsigned int slot)
+static long slot_offset(unsigned int slot)
 {
 	/* In whole pages, so that longer records do not move the others. */
 	_Static_assert(LW_STORE_SLOT_SIZE <= 4096, "a slot does not fit");
-	return (off_t)slot * 4096;
+	return (long)slot * 4096;
 }
 
 /** Write one slot in place: a power cut may leave it torn, as in a flash. */
 static int write_slot(void *context, unsigned int slot, const uint8_t *bytes, size_t length)
 {
 	const struct simulator *simulator = context;
-	const int fd = simulator->storage_fd;
-	const ssize_t written = pwrite(fd, bytes, length, slot_offset(slot));
 
-	if (written < 0) {
-		return -errno;
-	}
-	return (size_t)written != length ? -EIO : fsync(fd) ? -errno : 0;
+	return lw_host_write_at(simulator->storage_fd, bytes, length, slot_offset(slot));
 }
 
 static size_t read_slot(void *context, unsigned int slot, uint8_t *bytes, size_t size)
 {
 	const struct simulator *simulator = context;
-	const ssize_t length = pread(simulator->storage_fd, bytes, size, slot_offset(slot));
 
-	return length > 0 ? (size_t)length : 0;
+	return lw_host_read_at(simulator->storage_fd, bytes, size, slot_offset(slot));
+}
+
+/**
+ * Open the storage for this simulator alone: two would write over each other's records.
+ *
+ * @return its descriptor, or negative after an error message
+ */
+static int open_storage(const char *path)
+{
+	const int fd = lw_host_open_alone(path);
+
+	if (fd < 0) {
+		fprintf(stderr, "lw_sim: --storage %s: %s\n", path,
+			fd == -EBUSY ? "another simulator keeps its parameters there; end it, or "
+				       "name another file"
+				     : strerror(-fd));
+	}
+	return fd;
+}
+
+/** Begin the trace file. @return false after an error message */
+static bool open_trace(struct simulator *simulator)
+{
+	simulator->trace = fopen(simulator->options.trace, "w");
+	if (simulator->trace == NULL) {
+		fprintf(stderr, "lw_sim: %s: %s\n", simulator->options.trace, strerror(errno));
+		return false;
+	}
+	fputs("time_ms,state,net_edges,pattern_edges,m,u,steps,carriage_um,drum_millirpm,flags\n",
+	      simulator->trace);
+	return true;
 }
 
 static void trace(void *context)
@@ -237,8 +274,22 @@ static void trace(void *context)
 /** Move bytes between the port and the slave. @return false if the port is gone. */
 static bool serve_port(struct simulator *simulator)
 {
+	if (simulator->options.tcp != NULL) {
+		lw_tcp_serve(&simulator->tcp, &simulator->world, lw_host_now_ns() / 1000);
+		return true;
+	}
+
 	struct lw_slave *slave = &simulator->world.device.slave;
 	uint8_t bytes[LW_RTU_FRAME_MAX];
+	const uint64_t away_ns = lw_host_now_ns() - simulator->looked_ns;
+
+	/* After a stop of the program, or a laptop's sleep, nobody knows when it came. */
+	if (simulator->looked_ns != 0 && away_ns / 1000 > LW_SLAVE_WAIT_MAX_US &&
+	    (lw_port_drop(&simulator->port) || lw_slave_deadline_us(slave) != UINT64_MAX)) {
+		lw_slave_lose(slave);
+	}
+	simulator->looked_ns = lw_host_now_ns();
+
 	const ssize_t count = lw_port_read(&simulator->port, bytes, sizeof(bytes));
 
 	if (count < 0) {
@@ -247,10 +298,13 @@ static bool serve_port(struct simulator *simulator)
 		return false;
 	}
 	if (count > 0) {
-		lw_slave_receive(slave, bytes, (size_t)count, real_ns() / 1000);
+		if (lw_port_echo_changed(&simulator->port)) {
+			lw_slave_reconfigure(slave);
+		}
+		lw_slave_receive(slave, bytes, (size_t)count, lw_host_now_ns() / 1000);
 	}
 
-	const size_t length = lw_slave_poll(slave, real_ns() / 1000, bytes);
+	const size_t length = lw_slave_poll(slave, lw_host_now_ns() / 1000, bytes);
 
 	if (length > 0) {
 		lw_port_write(&simulator->port, bytes, length);
@@ -269,36 +323,31 @@ static bool serve_port(struct simulator *simulator)
 static void wait_until(struct simulator *simulator, uint64_t wake_ns)
 {
 	const uint64_t deadline_us = lw_slave_deadline_us(&simulator->world.device.slave);
-	const uint64_t now_ns = real_ns();
-	struct pollfd fd = {.fd = simulator->port.fd, .events = POLLIN};
-	struct timespec timeout;
+	const uint64_t now_ns = lw_host_now_ns();
 
 	if (deadline_us < wake_ns / 1000) {
 		wake_ns = deadline_us * 1000;
 	}
-	wake_ns = wake_ns > now_ns ? wake_ns - now_ns : 0;
-	timeout.tv_sec = (time_t)(wake_ns / 1000000000u);
-	timeout.tv_nsec = (long)(wake_ns % 1000000000u);
-	(void)ppoll(&fd, 1, &timeout, NULL);
+	lw_tcp_wait(&simulator->tcp, simulator->port.fd, wake_ns > now_ns ? wake_ns - now_ns : 0);
 }
 
 static int run(struct simulator *simulator)
 {
 	struct lw_world *world = &simulator->world;
 	const double speed = simulator->options.speed;
-	uint64_t start_real_ns = real_ns();
+	uint64_t start_real_ns = lw_host_now_ns();
 	uint64_t start_virtual_ns = world->now_ns;
 
 	while (!stop_signal) {
 		if (speed > 0) {
 			const uint64_t chunk_real_ns = (uint64_t)(CHUNK_NS / speed);
-			uint64_t elapsed_ns = real_ns() - start_real_ns;
+			uint64_t elapsed_ns = lw_host_now_ns() - start_real_ns;
 			uint64_t target_ns =
 				start_virtual_ns + (uint64_t)((double)elapsed_ns * speed);
 
 			if (target_ns > world->now_ns + (uint64_t)(LAG_MAX_NS * speed)) {
 				/* Hopelessly behind (a sleeping laptop): go on from here. */
-				start_real_ns = real_ns();
+				start_real_ns = lw_host_now_ns();
 				start_virtual_ns = world->now_ns;
 				target_ns = world->now_ns;
 			}
@@ -311,7 +360,8 @@ static int run(struct simulator *simulator)
 				}
 			}
 			wait_until(simulator,
-				   real_ns() + (chunk_real_ns < 1000000 ? chunk_real_ns : 1000000));
+				   lw_host_now_ns() +
+					   (chunk_real_ns < 1000000 ? chunk_real_ns : 1000000));
 		} else {
 			lw_world_run(world, world->now_ns + CHUNK_NS);
 		}
@@ -330,15 +380,48 @@ static const char *port_error(int error)
 	case -EADDRINUSE:
 		return "another simulator has this port; end it, or choose another path. "
 		       "(If none is running, remove the link.)";
+	case -ENOTSUP:
+		return "there are no pseudo terminals here: use --tcp ADDRESS:PORT";
 	default:
 		return strerror(-error);
+	}
+}
+
+/** Open the port, or listen. @return false after an error message */
+static bool open_line(struct simulator *simulator)
+{
+	const struct options *options = &simulator->options;
+	const char *why;
+	int ret;
+
+	simulator->port.fd = -1;
+	simulator->tcp.socket = -1;
+	if (options->tcp != NULL) {
+		if (lw_tcp_open(&simulator->tcp, options->tcp, &why)) {
+			fprintf(stderr, "lw_sim: --tcp %s: %s\n", options->tcp, why);
+			return false;
+		}
+		return true;
+	}
+	ret = lw_port_open(&simulator->port, options->port, &simulator->world.device.line);
+	if (ret) {
+		fprintf(stderr, "lw_sim: %s: %s\n", options->port, port_error(ret));
+	}
+	return ret == 0;
+}
+
+static void close_line(struct simulator *simulator)
+{
+	if (simulator->options.tcp != NULL) {
+		lw_tcp_close(&simulator->tcp);
+	} else {
+		lw_port_close(&simulator->port);
 	}
 }
 
 int main(int argc, char **argv)
 {
 	static struct simulator simulator; /* large: off the stack */
-	const struct sigaction action = {.sa_handler = on_signal};
 	struct lw_world_config config;
 	int ret;
 
@@ -346,54 +429,52 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	if (simulator.options.storage != NULL) {
-		simulator.storage_fd =
-			open(simulator.options.storage, O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+		simulator.storage_fd = open_storage(simulator.options.storage);
 		if (simulator.storage_fd < 0) {
-			fprintf(stderr, "lw_sim: --storage %s: %s\n", simulator.options.storage,
-				strerror(errno));
 			return EXIT_FAILURE;
 		}
 	}
-	if (simulator.options.trace != NULL) {
-		simulator.trace = fopen(simulator.options.trace, "w");
-		if (simulator.trace == NULL) {
-			fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.trace,
-				strerror(errno));
-			return EXIT_FAILURE;
-		}
-		fputs("time_ms,state,net_edges,pattern_edges,m,u,steps,carriage_um,drum_millirpm,"
-		      "flags\n",
-		      simulator.trace);
-	}
+
+	const bool is_serial =
+		simulator.options.port != NULL && lw_port_is_serial(simulator.options.port);
 
 	config = (struct lw_world_config){
 		.seed = simulator.options.seed,
 		.carriage_um = simulator.options.carriage_um,
-		.silence_us = lw_port_is_serial(simulator.options.port) ? 0 : PTY_SILENCE_US,
+		.silence_us = simulator.options.silence_us != 0 ? simulator.options.silence_us
+			      : is_serial                       ? 0
+								: PTY_SILENCE_US,
+		.line_takes_no_time = !is_serial,
 		.unit_id = simulator.options.unit_id,
 		.context = &simulator,
 		.read_slot = simulator.options.storage != NULL ? read_slot : NULL,
 		.write_slot = simulator.options.storage != NULL ? write_slot : NULL,
 		.observe = trace,
 	};
-	if (lw_world_init(&simulator.world, &config, real_ns() / 1000)) {
+	if (lw_world_init(&simulator.world, &config, lw_host_now_ns() / 1000)) {
 		fprintf(stderr, "lw_sim: --carriage-um %d: beyond the end stops\n",
 			simulator.options.carriage_um);
 		return EXIT_FAILURE;
 	}
-	ret = lw_port_open(&simulator.port, simulator.options.port, &simulator.world.device.line);
-	if (ret) {
-		fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.port, port_error(ret));
+	if (!open_line(&simulator)) {
 		return EXIT_FAILURE;
 	}
-	sigaction(SIGINT, &action, NULL);
-	sigaction(SIGTERM, &action, NULL);
-	sigaction(SIGHUP, &action, NULL);
-	printf("ready %s\n", simulator.options.port);
-	fflush(stdout);
+	/* Not before this simulator is known to be the only one at its port and storage. */
+	if (simulator.options.trace != NULL && !open_trace(&simulator)) {
+		close_line(&simulator);
+		return EXIT_FAILURE;
+	}
+	lw_host_on_end(on_signal);
+	printf("ready %s\n",
+	       simulator.options.tcp != NULL ? simulator.tcp.shown : simulator.options.port);
+	if (fflush(stdout)) {
+		fprintf(stderr, "lw_sim: \"ready\" cannot be written: %s\n", strerror(errno));
+		close_line(&simulator);
+		return EXIT_FAILURE;
+	}
 
 	ret = run(&simulator);
-	lw_port_close(&simulator.port);
+	close_line(&simulator);
 	if (simulator.trace != NULL && fclose(simulator.trace)) {
 		fprintf(stderr, "lw_sim: %s: %s\n", simulator.options.trace, strerror(errno));
 		ret = EXIT_FAILURE;

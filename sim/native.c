@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * What Python calls by ctypes: the compiled law over runs of edges, the derivation of a parameter
  * set, and a whole world for tests. This is host code: it may use the heap.
@@ -8,8 +9,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "lw/law.h"
-#include "lw/params.h"
+#include "lw/bytes/layout.h"
+#include "lw/motion/law.h"
+#include "lw/control/params.h"
 #include "world.h"
 
 /** A law to replay. Positions and slopes Q16.16 where not in microsteps. */
@@ -22,6 +24,8 @@ struct lw_native_replay_setup {
 	int32_t u;
 	int32_t dwell_plus_edges;
 	int32_t dwell_minus_edges;
+	int32_t breaker_edges;
+	int32_t breaker_cycles;
 };
 
 /** What a replay ended with. */
@@ -29,6 +33,8 @@ struct lw_native_replay_result {
 	int32_t m;
 	int32_t u;
 	int32_t dwell;
+	int32_t cycle_plus;
+	int32_t cycle_minus;
 	int32_t min_pos;
 	int32_t max_pos;
 	int64_t steps;  /**< net */
@@ -59,6 +65,9 @@ int lw_native_replay(const struct lw_native_replay_setup *setup, const int32_t *
 	    setup->lplus_usteps - (int64_t)setup->lminus_usteps < 2 || reach_max > INT16_MAX ||
 	    reach_min < INT16_MIN || setup->u > ks || setup->u < -ks || setup->u % setup->ka != 0 ||
 	    setup->dwell_plus_edges < 0 || setup->dwell_minus_edges < 0 ||
+	    setup->breaker_edges < 0 || setup->breaker_edges > (int32_t)LW_LAW_BREAKER_EDGES_MAX ||
+	    setup->breaker_cycles < 0 ||
+	    setup->breaker_cycles > (int32_t)LW_LAW_BREAKER_CYCLES_MAX ||
 	    lw_law_pos_usteps(setup->m) < reach_min || lw_law_pos_usteps(setup->m) > reach_max) {
 		return -EINVAL;
 	}
@@ -70,6 +79,8 @@ int lw_native_replay(const struct lw_native_replay_setup *setup, const int32_t *
 		.sweep_end = setup->lplus_usteps * LW_USTEP,
 		.dwell_plus_edges = (uint32_t)setup->dwell_plus_edges,
 		.dwell_minus_edges = (uint32_t)setup->dwell_minus_edges,
+		.breaker_edges = (uint32_t)setup->breaker_edges,
+		.breaker_cycles = (uint32_t)setup->breaker_cycles,
 	};
 	struct lw_law law = lw_law_at(&window, setup->m, setup->u);
 	const int32_t pos_start = lw_law_pos_usteps(setup->m);
@@ -109,6 +120,8 @@ int lw_native_replay(const struct lw_native_replay_setup *setup, const int32_t *
 	result->m = lw_law_m(&law);
 	result->u = law.u;
 	result->dwell = (int32_t)law.dwell_edges;
+	result->cycle_plus = (int32_t)law.cycle_plus;
+	result->cycle_minus = (int32_t)law.cycle_minus;
 	return 0;
 }
 
@@ -125,6 +138,8 @@ struct lw_native_derived {
 	uint32_t edges_per_1000_drum_revs;
 	uint32_t dwell_plus_edges;
 	uint32_t dwell_minus_edges;
+	uint32_t breaker_edges;
+	uint32_t breaker_cycles;
 };
 
 /** lw_params_derive() for a set given as its values in the order of the map. */
@@ -149,6 +164,8 @@ int lw_native_derive(const int32_t *values, struct lw_native_derived *derived,
 			.edges_per_1000_drum_revs = full.edges_per_1000_drum_revs,
 			.dwell_plus_edges = full.dwell_plus_edges,
 			.dwell_minus_edges = full.dwell_minus_edges,
+			.breaker_edges = full.breaker_edges,
+			.breaker_cycles = full.breaker_cycles,
 		};
 	}
 	return ret;
@@ -222,3 +239,85 @@ void lw_native_world_truth(const struct lw_world *world, struct lw_plant_truth *
 {
 	lw_plant_read_truth(&world->plant, truth);
 }
+
+/** Layout of what Python copies, and of the plant's for the tests. */
+const struct lw_layout lw_layout_native[] = {
+	LW_LAYOUT_STRUCT(lw_native_replay_setup),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, ka),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, nr),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, lplus_usteps),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, lminus_usteps),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, m),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, u),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, dwell_plus_edges),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, dwell_minus_edges),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, breaker_edges),
+	LW_LAYOUT_MEMBER(lw_native_replay_setup, breaker_cycles),
+	LW_LAYOUT_STRUCT(lw_native_replay_result),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, m),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, u),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, dwell),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, cycle_plus),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, cycle_minus),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, min_pos),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, max_pos),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, steps),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, pulses),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, edges),
+	LW_LAYOUT_MEMBER(lw_native_replay_result, trace_count),
+	LW_LAYOUT_STRUCT(lw_native_derived),
+	LW_LAYOUT_MEMBER(lw_native_derived, ka),
+	LW_LAYOUT_MEMBER(lw_native_derived, nr),
+	LW_LAYOUT_MEMBER(lw_native_derived, ks),
+	LW_LAYOUT_MEMBER(lw_native_derived, reversal_plus_usteps),
+	LW_LAYOUT_MEMBER(lw_native_derived, reversal_minus_usteps),
+	LW_LAYOUT_MEMBER(lw_native_derived, slope_error_ppm),
+	LW_LAYOUT_MEMBER(lw_native_derived, overshoot_error_um),
+	LW_LAYOUT_MEMBER(lw_native_derived, overshoot_um),
+	LW_LAYOUT_MEMBER(lw_native_derived, edges_per_1000_drum_revs),
+	LW_LAYOUT_MEMBER(lw_native_derived, dwell_plus_edges),
+	LW_LAYOUT_MEMBER(lw_native_derived, dwell_minus_edges),
+	LW_LAYOUT_MEMBER(lw_native_derived, breaker_edges),
+	LW_LAYOUT_MEMBER(lw_native_derived, breaker_cycles),
+	LW_LAYOUT_STRUCT(lw_refusal),
+	LW_LAYOUT_MEMBER(lw_refusal, reason),
+	LW_LAYOUT_MEMBER(lw_refusal, address),
+	LW_LAYOUT_MEMBER(lw_refusal, value),
+	LW_LAYOUT_MEMBER(lw_refusal, limit),
+	LW_LAYOUT_STRUCT(lw_plant_truth),
+	LW_LAYOUT_MEMBER(lw_plant_truth, time_ns),
+	LW_LAYOUT_MEMBER(lw_plant_truth, drum_transitions),
+	LW_LAYOUT_MEMBER(lw_plant_truth, drum_milli_rpm),
+	LW_LAYOUT_MEMBER(lw_plant_truth, carriage_um),
+	LW_LAYOUT_MEMBER(lw_plant_truth, carriage_usteps),
+	LW_LAYOUT_MEMBER(lw_plant_truth, carriage_um_per_s),
+	LW_LAYOUT_MEMBER(lw_plant_truth, commanded_usteps),
+	LW_LAYOUT_MEMBER(lw_plant_truth, lag_usteps),
+	LW_LAYOUT_MEMBER(lw_plant_truth, step_pulses),
+	LW_LAYOUT_MEMBER(lw_plant_truth, slipped_usteps),
+	LW_LAYOUT_MEMBER(lw_plant_truth, pole_slips),
+	LW_LAYOUT_MEMBER(lw_plant_truth, in_sync),
+	LW_LAYOUT_MEMBER(lw_plant_truth, rope_um),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_STALL),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_SLIP),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_SIDE_LOAD),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_BOUNCE),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_LIMIT_PLUS),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_LIMIT_MINUS),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_OVERTRAVEL_PLUS),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_OVERTRAVEL_MINUS),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_ENCODER_LOSE_PULSES),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_ENCODER_ILLEGAL),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_ENCODER_DITHER),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_PLACE_CARRIAGE),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_CARRIAGE_REVERSED),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_ENCODER_EXTRA_PULSES),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_STEPPER_ALARM),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_ENCODER_A),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_ENCODER_B),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_ENCODER_INDEX),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_BLIP_PLUS),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_BLIP_MINUS),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_COUNT),
+	{0},
+};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * What Python calls by ctypes for cam tables: the compiled check, and the compiled cam over runs
  * of edges.
@@ -5,7 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "lw/cam.h"
+#include "lw/bytes/layout.h"
+#include "lw/cam/cam.h"
 
 /** What a replay of a cam ended with. */
 struct lw_native_cam_result {
@@ -30,12 +32,6 @@ int lw_native_cam_check(const struct lw_cam_table *table, const struct lw_cam_sc
 			     scale->ramp_divisor);
 
 	return lw_cam_table_check(table, &lowest, limits, statistics, why);
-}
-
-/** Bytes of a cam, for the caller's memory. */
-size_t lw_native_cam_size(void)
-{
-	return sizeof(struct lw_cam);
 }
 
 /** Start a cam on a checked table, which must outlive it. */
@@ -95,3 +91,63 @@ void lw_native_cam_run(struct lw_cam *cam, const int32_t *runs, size_t run_count
 	result->row = cam->row;
 	result->cycles = cam->cycles;
 }
+
+/** Layout of what Python copies. */
+const struct lw_layout lw_layout_cam[] = {
+	LW_LAYOUT_STRUCT(lw_cam_row),
+	LW_LAYOUT_MEMBER(lw_cam_row, master),
+	LW_LAYOUT_MEMBER(lw_cam_row, slave),
+	LW_LAYOUT_STRUCT(lw_cam_table),
+	LW_LAYOUT_MEMBER(lw_cam_table, name),
+	LW_LAYOUT_MEMBER(lw_cam_table, version),
+	LW_LAYOUT_MEMBER(lw_cam_table, interpolation),
+	LW_LAYOUT_MEMBER(lw_cam_table, row_count),
+	LW_LAYOUT_MEMBER(lw_cam_table, advance),
+	LW_LAYOUT_MEMBER(lw_cam_table, rows),
+	LW_LAYOUT_STRUCT(lw_cam_scale),
+	LW_LAYOUT_MEMBER(lw_cam_scale, edges),
+	LW_LAYOUT_MEMBER(lw_cam_scale, master_units),
+	LW_LAYOUT_MEMBER(lw_cam_scale, usteps),
+	LW_LAYOUT_MEMBER(lw_cam_scale, slave_units),
+	LW_LAYOUT_MEMBER(lw_cam_scale, ramp_divisor),
+	LW_LAYOUT_STRUCT(lw_cam_limits),
+	LW_LAYOUT_MEMBER(lw_cam_limits, top_edges_per_s),
+	LW_LAYOUT_MEMBER(lw_cam_limits, steps_per_s_max),
+	LW_LAYOUT_STRUCT(lw_cam_refusal),
+	LW_LAYOUT_MEMBER(lw_cam_refusal, reason),
+	LW_LAYOUT_MEMBER(lw_cam_refusal, row),
+	LW_LAYOUT_MEMBER(lw_cam_refusal, value),
+	LW_LAYOUT_MEMBER(lw_cam_refusal, limit),
+	LW_LAYOUT_STRUCT(lw_cam_statistics),
+	LW_LAYOUT_MEMBER(lw_cam_statistics, cycle_edges),
+	LW_LAYOUT_MEMBER(lw_cam_statistics, min_usteps),
+	LW_LAYOUT_MEMBER(lw_cam_statistics, max_usteps),
+	LW_LAYOUT_MEMBER(lw_cam_statistics, slope_max_permille),
+	LW_LAYOUT_MEMBER(lw_cam_statistics, slope_max_row),
+	LW_LAYOUT_STRUCT(lw_cam),
+	LW_LAYOUT_MEMBER(lw_cam, remainder),
+	LW_LAYOUT_MEMBER(lw_cam, den),
+	LW_LAYOUT_MEMBER(lw_cam, slope),
+	LW_LAYOUT_MEMBER(lw_cam, curve),
+	LW_LAYOUT_MEMBER(lw_cam, at),
+	LW_LAYOUT_MEMBER(lw_cam, piece_begin),
+	LW_LAYOUT_MEMBER(lw_cam, piece_end),
+	LW_LAYOUT_MEMBER(lw_cam, stride),
+	LW_LAYOUT_MEMBER(lw_cam, pos_usteps),
+	LW_LAYOUT_MEMBER(lw_cam, offset),
+	LW_LAYOUT_MEMBER(lw_cam, row),
+	LW_LAYOUT_MEMBER(lw_cam, cycles),
+	LW_LAYOUT_MEMBER(lw_cam, table),
+	LW_LAYOUT_MEMBER(lw_cam, scale),
+	LW_LAYOUT_STRUCT(lw_native_cam_result),
+	LW_LAYOUT_MEMBER(lw_native_cam_result, pos),
+	LW_LAYOUT_MEMBER(lw_native_cam_result, min_pos),
+	LW_LAYOUT_MEMBER(lw_native_cam_result, max_pos),
+	LW_LAYOUT_MEMBER(lw_native_cam_result, pulses),
+	LW_LAYOUT_MEMBER(lw_native_cam_result, edges),
+	LW_LAYOUT_MEMBER(lw_native_cam_result, row),
+	LW_LAYOUT_MEMBER(lw_native_cam_result, cycles),
+	LW_LAYOUT_MEMBER(lw_native_cam_result, step_max),
+	LW_LAYOUT_MEMBER(lw_native_cam_result, trace_count),
+	{0},
+};

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #define _GNU_SOURCE
 
 #include "port.h"
@@ -7,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
@@ -95,7 +97,8 @@ static int open_serial(struct lw_port *port, const char *path, const struct lw_l
 	if (port->fd < 0) {
 		return -errno;
 	}
-	ret = configure_serial(port, line);
+	/* Two programs at one port take each other's bytes. */
+	ret = flock(port->fd, LOCK_EX | LOCK_NB) ? -EBUSY : configure_serial(port, line);
 	if (ret) {
 		close(port->fd);
 	}
@@ -174,6 +177,29 @@ int lw_port_set_line(struct lw_port *port, const struct lw_line *line)
 		return 0;
 	}
 	return configure_serial(port, line);
+}
+
+bool lw_port_echo_changed(struct lw_port *port)
+{
+	struct termios settings;
+	const bool before = port->echoes;
+
+	if (port->client_fd >= 0 && tcgetattr(port->client_fd, &settings) == 0) {
+		port->echoes = (settings.c_lflag & ECHO) != 0;
+	}
+	return port->echoes != before;
+}
+
+bool lw_port_drop(struct lw_port *port)
+{
+	uint8_t bytes[256];
+
+	bool any = false;
+
+	while (lw_port_read(port, bytes, sizeof(bytes)) > 0) {
+		any = true;
+	}
+	return any;
 }
 
 void lw_port_close(struct lw_port *port)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The byte side of the simulator: a pseudo terminal with a link to it, or a real serial port.
@@ -10,13 +11,14 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-#include "lw/device.h"
+#include "lw/device/device.h"
 
 /** An open port. */
 struct lw_port {
 	int fd;
 	int client_fd; /**< pty: our own hold on the client's side, so that clients may come and go
 			*/
+	bool echoes;   /**< pty: the terminal gives back what is written to it */
 	struct lw_line line; /**< of a serial port */
 	char link[4096];     /**< pty: the link to remove at the end; empty otherwise */
 };
@@ -42,6 +44,15 @@ int lw_port_open(struct lw_port *port, const char *path, const struct lw_line *l
  * @retval <0 errno
  */
 int lw_port_set_line(struct lw_port *port, const struct lw_line *line);
+
+/**
+ * Has a pseudo terminal begun or ceased to give back what is written to it, since the last call?
+ * Who opens it may set it so (stty echo). Of a serial port nobody knows.
+ */
+bool lw_port_echo_changed(struct lw_port *port);
+
+/** Drop what has come and has not been read. @return there was something */
+bool lw_port_drop(struct lw_port *port);
 
 /** Close, and remove the link if it is still ours. */
 void lw_port_close(struct lw_port *port);

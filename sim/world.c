@@ -1,6 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "world.h"
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define NS_PER_US 1000u
@@ -72,8 +74,10 @@ int lw_world_init(struct lw_world *world, const struct lw_world_config *config,
 	world->device_config = (struct lw_device_config){
 		.host = LW_HOST_SIMULATOR,
 		.store = &world->store,
+		.kept = &world->kept,
 		.host_section = &world->bench_section,
 		.silence_us = config->silence_us,
+		.line_takes_no_time = config->line_takes_no_time,
 		.unit_id = config->unit_id,
 	};
 	power_up(world, slave_now_us);
@@ -124,9 +128,14 @@ static void tick(struct lw_world *world)
 {
 	if (world->bench.power_cut) {
 		world->bench.power_cut = false;
+		if (!world->bench.memory_kept) {
+			world->kept = (struct lw_kept){0};
+		}
+		world->device_config.watchdog_reset = world->bench.memory_kept;
 		power_up(world, world->device.slave.last_request_us);
 	}
 	lw_controller_stepper_alarm(&world->device.controller, world->plant.pins.stepper_alarm);
+	lw_device_trim_buttons(&world->device, world->plant.pins.trim_buttons);
 	lw_device_tick(&world->device, controller_us(world));
 	serve_storage(world);
 	serve_outputs(world);
@@ -138,11 +147,8 @@ static void tick(struct lw_world *world)
 static void edge(struct lw_world *world, enum lw_edge_source source, int steps)
 {
 	const int driver_steps = lw_controller_driver_step(&world->device.controller, steps);
-	const int direction = driver_steps > 0 ? 1 : -1;
 
-	for (int given = 0; given != driver_steps; given += direction) {
-		lw_plant_step(&world->plant, direction);
-	}
+	lw_plant_step(&world->plant, driver_steps);
 	if (world->config.observe_edge != NULL) {
 		world->config.observe_edge(world->config.context, source, driver_steps);
 	}
@@ -177,6 +183,63 @@ static void plant_event(struct lw_world *world)
 	}
 }
 
+/** Do so many edges of the law give steps one way only? Then their sum tells their number, too. */
+static bool steps_one_way(const struct lw_controller *controller, uint32_t edges)
+{
+	const struct lw_law *law = &controller->motion.law;
+
+	return law->open_span != 0 && (uint64_t)llabs(law->u) > (uint64_t)edges * (uint32_t)law->ka;
+}
+
+/** Transitions of a sound encoder with nothing else in between. */
+static void run_of_transitions(struct lw_world *world, uint64_t until_ns)
+{
+	struct lw_controller *controller = &world->device.controller;
+	struct lw_plant *plant = &world->plant;
+	struct lw_plant_run run = lw_plant_run_begin(plant, until_ns);
+	const int direction = plant->drum.direction;
+	bool index_begins;
+
+	do {
+		index_begins = lw_plant_run_next(&run);
+	} while (!index_begins && lw_plant_run_goes_on(&run));
+
+	const uint32_t together = steps_one_way(controller, run.count) ? run.count : 1;
+
+	for (uint32_t left = run.count; left > 0; left -= together) {
+		const int steps =
+			lw_controller_encoder_count(controller, direction * (int32_t)together);
+
+		lw_plant_step(plant, lw_controller_driver_step(controller, steps));
+	}
+	lw_plant_run_end(plant, &run);
+	world->now_ns = plant->now_ns;
+	if (index_begins) {
+		lw_controller_encoder_index(controller);
+	}
+}
+
+/** The same, for who looks at each of them, and may change the plant. */
+static void observed_run(struct lw_world *world, uint64_t until_ns)
+{
+	struct lw_controller *controller = &world->device.controller;
+	struct lw_plant *plant = &world->plant;
+	struct lw_plant_run run = lw_plant_run_begin(plant, until_ns);
+
+	do {
+		const bool index_begins = lw_plant_run_next(&run);
+
+		lw_plant_run_end(plant, &run);
+		world->now_ns = plant->now_ns;
+		edge(world, LW_EDGE_SOURCE_ENCODER,
+		     lw_controller_encoder(controller, plant->pins.encoder_a,
+					   plant->pins.encoder_b));
+		if (index_begins) {
+			lw_controller_encoder_index(controller);
+		}
+	} while (lw_plant_run_goes_on(&run) && plant->drum.plain);
+}
+
 void lw_world_run(struct lw_world *world, uint64_t until_ns)
 {
 	for (;;) {
@@ -187,7 +250,10 @@ void lw_world_run(struct lw_world *world, uint64_t until_ns)
 		if ((plant_ns < own_ns ? plant_ns : own_ns) > until_ns) {
 			break;
 		}
-		if (plant_ns <= own_ns) {
+		if (lw_plant_next_is_run(&world->plant, own_ns < until_ns ? own_ns : until_ns)) {
+			(world->config.observe_edge == NULL ? run_of_transitions : observed_run)(
+				world, own_ns < until_ns ? own_ns : until_ns);
+		} else if (plant_ns <= own_ns) {
 			world->now_ns = plant_ns;
 			plant_event(world);
 		} else if (world->timer_ns <= world->tick_ns) {

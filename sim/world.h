@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The world: one controller and one plant on a virtual clock, wired pin to pin. No clock, no file,
@@ -8,10 +9,11 @@
 #ifndef LW_WORLD_H
 #define LW_WORLD_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#include "lw/device.h"
+#include "lw/device/device.h"
 #include "lw/map.h"
 #include "lw/plant.h"
 #include "lw/plant_bench.h"
@@ -19,10 +21,11 @@
 /** How a world starts. */
 struct lw_world_config {
 	uint64_t seed;
-	int32_t carriage_um; /**< where the carriage stands at power-up */
-	uint32_t silence_us; /**< see struct lw_device_config */
-	uint8_t unit_id;     /**< see struct lw_device_config */
-	void *context;       /**< handed to the functions below */
+	int32_t carriage_um;     /**< where the carriage stands at power-up */
+	uint32_t silence_us;     /**< see struct lw_device_config */
+	bool line_takes_no_time; /**< see struct lw_device_config */
+	uint8_t unit_id;         /**< see struct lw_device_config */
+	void *context;           /**< handed to the functions below */
 	/**
 	 * Read a slot of the storage: bytes, 0 for none. NULL: the storage is in memory, at first
 	 * empty.
@@ -54,6 +57,7 @@ struct lw_world {
 	bool stepper_enabled;
 	bool was_indexed;
 	struct lw_store store;
+	struct lw_kept kept; /**< the controller's memory over a restart */
 	uint8_t memory[LW_STORE_SLOTS][LW_STORE_SLOT_SIZE]; /**< the storage if it is in memory */
 };
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which write is taken in which state: the rules that test_commands.py tests cell by cell.
 
 `python tests/command_rules.py` writes the table into doc/commands.md; with --check it only says
@@ -16,10 +17,12 @@ MOVING = {
     *(State.BACKING_OFF, State.SEEKING, State.INDEX_REVERSAL, State.SPAN_CHECK, State.PARKING),
     *(State.CENTRING, State.JOGGING),
 }
+FOLLOWING = {State.TRACKING, State.REACQUIRING}
 SET_COMMANDS = {
     *(Command.APPLY, Command.REVERT, Command.SAVE),
     *(Command.FACTORY_MOTION, Command.FACTORY_LINE, Command.FACTORY_ALL, Command.TRY_LINE),
 }
+TRIM_COMMANDS = {Command.TRIM_EARLY, Command.TRIM_LATE}
 CAM_COMMANDS = {Command.CAM_CHECK, Command.CAM_ACTIVATE, Command.CAM_DISCARD}
 
 STATES: dict[str, tuple[State, str]] = {
@@ -38,6 +41,7 @@ STATES: dict[str, tuple[State, str]] = {
     "centred": (State.CENTRED, ""),
     "centred_turning": (State.CENTRED, "drum turning"),
     "jogging": (State.JOGGING, "toward plus"),
+    "reacquiring_turning": (State.REACQUIRING, "drum turning"),
     "off": (State.OFF, ""),
     "off_turning": (State.OFF, "drum turning"),
     "fault": (State.FAULT, "plus overtravel switch still actuated"),
@@ -48,7 +52,7 @@ STATES: dict[str, tuple[State, str]] = {
 
 def busy(state: State) -> Reason | None:
     """Why what needs a standing carriage is refused."""
-    if state == State.TRACKING:
+    if state in FOLLOWING:
         return Reason.BUSY_TRACKING
     return Reason.BUSY_MOVING if state in MOVING else None
 
@@ -62,19 +66,44 @@ def jog_refusal(name: str, state: State, direction: int) -> Reason | None:
     return Reason.MODE_OFF if state == State.OFF else busy(state)
 
 
-def command_refusal(name: str, state: State, command: int) -> Reason | None:
-    """Stop is never refused; sets change at rest; indexing needs current and a resting drum."""
-    if command in SET_COMMANDS:
-        return busy(state)
-    if command == Command.CLEAR_FAULT and name == "fault":
-        return Reason.CAUSE_PRESENT
-    if command != Command.INDEX:
-        return None
+def by_hand_refusal(state: State, command: int) -> Reason | None:
+    """The factory set does not describe the drum; a trim is for what follows it."""
+    if command == Command.SET_ROPE:
+        return Reason.ROPE_NOT_DESCRIBED
+    return None if state == State.TRACKING else Reason.TRIM_NOT_FOLLOWING
+
+
+def reacquire_refusal(name: str, state: State) -> Reason | None:
+    """For a turning drum and an unknown place only."""
     if state == State.OFF:
         return Reason.MODE_OFF
-    if state in MOVING:
-        return Reason.BUSY_MOVING
-    return Reason.DRUM_MOVING if name.endswith("turning") else None
+    if busy(state):
+        return busy(state)
+    if state in (State.READY, State.CENTRED):
+        return Reason.POSITION_KNOWN
+    if state == State.FAULT:
+        return Reason.FAULT_STANDS
+    return None if name.endswith("turning") else Reason.DRUM_AT_REST
+
+
+def command_refusal(name: str, state: State, command: int) -> Reason | None:
+    """Stop is never refused; sets change at rest; indexing needs current and a resting drum.
+
+    So does looking at the rope. Where some was laid while the carriage stood, that is acknowledged
+    after an indexing only: test_rope.py.
+    """
+    if command in SET_COMMANDS:
+        return busy(state)
+    if command in TRIM_COMMANDS | {Command.SET_ROPE}:
+        return by_hand_refusal(state, command)
+    if command == Command.REACQUIRE:
+        return reacquire_refusal(name, state)
+    if command == Command.CLEAR_FAULT and name == "fault":
+        return Reason.CAUSE_PRESENT
+    if command == Command.INDEX and (state == State.OFF or state in MOVING):
+        return Reason.MODE_OFF if state == State.OFF else Reason.BUSY_MOVING
+    at_rest_only = command in (Command.INDEX, Command.ACKNOWLEDGE_ROPE)
+    return Reason.DRUM_MOVING if at_rest_only and name.endswith("turning") else None
 
 
 def expected_refusal(name: str, state: State, register: str, value: int) -> Reason | None:
@@ -84,7 +113,7 @@ def expected_refusal(name: str, state: State, register: str, value: int) -> Reas
     if register == "command":
         return command_refusal(name, state, value)
     if register == "pitch_um":
-        return Reason.BUSY_TRACKING if state == State.TRACKING else None
+        return Reason.BUSY_TRACKING if state in FOLLOWING else None
     if register == "trim_plus_um":
         return Reason.BUSY_MOVING if state in MOVING else None
     return None
@@ -103,11 +132,14 @@ def _columns() -> Iterator[tuple[str, str, list[int]]]:
     """Head of a column, and the register and values that it stands for."""
     sets = [command for command in Command if command in SET_COMMANDS]
     cams = [command for command in Command if command in CAM_COMMANDS]
-    alone = [c for c in Command if c not in SET_COMMANDS | CAM_COMMANDS and c != Command.NONE]
+    trims = [command for command in Command if command in TRIM_COMMANDS]
+    together = SET_COMMANDS | CAM_COMMANDS | TRIM_COMMANDS
+    alone = [c for c in Command if c not in together and c != Command.NONE]
     for command in alone:
         yield command.label, "command", [command]
     yield ", ".join(command.label for command in sets), "command", sets
     yield ", ".join(command.label for command in cams), "command", cams
+    yield ", ".join(command.label for command in trims), "command", trims
     yield "mode", "mode", list(Mode)
     yield "jog +1", "jog", [1]
     yield "jog -1", "jog", [-1]
@@ -145,7 +177,11 @@ tests on the running controller, every cell. Do not edit.
 reason that `last_error_reason` (input 410) and, for a command, `command_reason` (input 403) tell;
 [registers.md](registers.md) has them in words. A closed write lock adds its own refusals, reason
 `locked`: [integration.md](integration.md). A command that is taken may still end as refused or
-failed: `command_result` (input 402) tells.
+failed: `command_result` (input 402) tells. With the flag `rope_laid_standing`, `acknowledge_rope`
+is refused with `rope_index_first` until an indexing has succeeded since. `set_rope` stands here for
+the factory set, which does not describe the drum; of one that is described it is taken in every
+state, with the drum at rest. `trim_early` and `trim_late` are also refused where the reversal would
+break a rule of the parameters, with the reason that APPLY would give.
 
 {table()}
 The columns stand for writes of holding registers: `command`, `mode` (any), `jog`, `trim_plus_um`

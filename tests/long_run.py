@@ -1,7 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
 """Does it ever drift? `./dev longrun`: a day of winch time, and a billion edges of the bare law.
 
 Both end where a closed form says, computed with Python's integers from the number of net edges
-alone (levelwind.ideal_screw), to the last bit.
+alone (levelwind.core.ideal_screw), to the last bit.
 """
 
 import argparse
@@ -9,8 +10,8 @@ import random
 import sys
 import time
 
-from levelwind.ideal_screw import Screw, State
-from levelwind.native import replay
+from levelwind.core.ideal_screw import Screw, State
+from levelwind.core.native import replay
 from world import World
 
 # Ka, Nr, L+, L-, dwell plus, dwell minus

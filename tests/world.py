@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A whole machine in this process: controller and plant on a virtual clock, no line between.
 
 Everything goes the way that a master goes: as Modbus requests, by the names of the map. Only
@@ -12,11 +13,11 @@ from ctypes import POINTER, c_bool, c_double, c_int, c_int32, c_int64, c_size_t,
 from enum import IntEnum
 from typing import NamedTuple
 
-from levelwind import native
-from levelwind.ideal_screw import Orbit, Screw
-from levelwind.ideal_screw import State as LawState
+from levelwind.core import layout, native
+from levelwind.core.ideal_screw import Orbit, Screw
+from levelwind.core.ideal_screw import State as LawState
+from levelwind.line.points import encode, lookup, runs
 from levelwind.map_table import POINTS, Command, Fault, Flag, Mode, Reason, Result, State
-from levelwind.points import encode, lookup, runs
 
 PDU_MAX = 253
 FRAME_MAX = 256
@@ -44,6 +45,12 @@ class PlantFault(IntEnum):
     PLACE_CARRIAGE_UM = 11
     CARRIAGE_REVERSED = 12
     ENCODER_EXTRA_PULSES = 13
+    STEPPER_ALARM = 14
+    ENCODER_A = 15  # ChannelFault
+    ENCODER_B = 16
+    ENCODER_INDEX = 17
+    BLIP_PLUS_US = 18
+    BLIP_MINUS_US = 19
 
 
 class Truth(ctypes.Structure):
@@ -62,6 +69,7 @@ class Truth(ctypes.Structure):
         ("slipped_usteps", c_int64),
         ("pole_slips", c_uint64),
         ("in_sync", c_bool),
+        ("rope_um", c_double),
     )
 
 
@@ -77,6 +85,11 @@ class RequestRefusedError(Exception):
 @functools.cache
 def _library() -> ctypes.CDLL:
     library = ctypes.CDLL(str(native.find(native.LIBRARY)))
+    layout.check(
+        library,
+        "lw_layout_native",
+        {"struct lw_plant_truth": Truth, "enum lw_plant_fault": PlantFault},
+    )
     world = ctypes.c_void_p
     for name, result, arguments in (
         ("create", world, (c_uint64, c_int32)),
@@ -211,7 +224,7 @@ class World:
     @property
     def flags(self) -> set[str]:
         """Names of the flags that are set."""
-        bits = self.value("flags")
+        bits = self.value("flags") | self.value("flags_2") << 32
         return {flag.label for flag in Flag if bits >> flag & 1}
 
     @property
@@ -285,6 +298,8 @@ class World:
         """The ideal reversing screw from here on: from a hand-over, by pattern_edges."""
         at = self.read("m", "u", "ka", "nr", "reversal_plus_usteps", "reversal_minus_usteps")
         at |= self.read("dwell_plus_edges", "dwell_minus_edges", "pattern_edges")
+        at |= self.read("breaker_edges", "active.breaker_cycles")
+        at |= self.read("breaker_cycle_plus", "breaker_cycle_minus")
         assert at["pattern_edges"] == 0
         screw = Screw(
             at["ka"],
@@ -293,8 +308,11 @@ class World:
             at["reversal_minus_usteps"],
             at["dwell_plus_edges"],
             at["dwell_minus_edges"],
+            at["breaker_edges"],
+            at["active.breaker_cycles"],
         )
-        return screw.orbit(LawState(at["m"], at["u"]))
+        cycles = (at["breaker_cycle_plus"], at["breaker_cycle_minus"])
+        return screw.orbit(LawState(at["m"], at["u"], 0, *cycles))
 
     def check_follows(self, orbit: Orbit) -> None:
         """The controller is where the ideal screw is, to the last bit."""

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * What the contexts of the firmware share: the device, its lock and its clock.
@@ -23,7 +24,7 @@
 #include <zephyr/devicetree.h>
 #include <zephyr/kernel.h>
 
-#include "lw/device.h"
+#include "lw/device/device.h"
 
 /** The one node that says what the controller is wired to. */
 #define APP_NODE DT_COMPAT_GET_ANY_STATUS_OKAY(levelwind_controller)

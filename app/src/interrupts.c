@@ -1,8 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Interrupts of one priority wait for each other, and the one with the lower number goes first: an
  * encoder that waits for a switch or for the kernel loses edges, but only at full speed. What may
- * ask for something of the motion must not interrupt who moves (lw/motion.h). No test on a desk
- * finds either, so the devicetree is checked here.
+ * ask for something of the motion must not interrupt who moves (lw/motion/motion.h). No test on a
+ * desk finds either, so the devicetree is checked here.
  */
 #include "interrupts.h"
 
@@ -63,20 +64,32 @@ void interrupts_start(void)
 
 #endif
 
-#define ENCODER_PRIORITY      PIN_PRIORITY(NODE(encoder), a_gpios)
+#if DT_NODE_HAS_COMPAT(NODE(encoder), levelwind_encoder_stm32)
+#define ENCODER_PRIORITY           TIMER_PRIORITY(NODE(encoder))
+#define SHARES_A_OR_B(node, gpios) 0
+#else
+#define ENCODER_PRIORITY PIN_PRIORITY(NODE(encoder), a_gpios)
+#define SHARES_A_OR_B(node, gpios)                                                                 \
+	(SHARED(node, gpios, NODE(encoder), a_gpios) || SHARED(node, gpios, NODE(encoder), b_gpios))
+BUILD_ASSERT(PIN_PRIORITY(NODE(encoder), b_gpios) == ENCODER_PRIORITY,
+	     "encoder: the interrupts of A and B must have one priority");
+#endif
 #define EDGE_TIMER_PRIORITY   TIMER_PRIORITY(NODE(edge_timer))
 #define UART_PRIORITY         DT_IRQ(NODE(modbus_uart), priority)
 /** Above the switching of threads, which has the lowest. */
 #define SYSTEM_TIMER_PRIORITY (IRQ_PRIO_LOWEST - 1)
 
-BUILD_ASSERT(PIN_PRIORITY(NODE(encoder), b_gpios) == ENCODER_PRIORITY,
-	     "encoder: the interrupts of A and B must have one priority");
 BUILD_ASSERT(EDGE_TIMER_PRIORITY > ENCODER_PRIORITY,
 	     "edge-timer: its interrupt needs a larger number, so that the encoder's is above it");
 BUILD_ASSERT(UART_PRIORITY > EDGE_TIMER_PRIORITY,
 	     "modbus-uart: its interrupt needs a larger number than the edge timer's");
 BUILD_ASSERT(SYSTEM_TIMER_PRIORITY > UART_PRIORITY,
 	     "modbus-uart: its interrupt needs a smaller number than the system timer's");
+#if DT_HAS_COMPAT_STATUS_OKAY(levelwind_stm32_system_timer)
+BUILD_ASSERT(TIMER_PRIORITY(DT_COMPAT_GET_ANY_STATUS_OKAY(levelwind_stm32_system_timer)) ==
+		     SYSTEM_TIMER_PRIORITY,
+	     "system-timer: its interrupt must be behind all others");
+#endif
 
 #if DT_NODE_HAS_PROP(NODE(encoder), index_gpios)
 /* It is counted against the edges: neither waits for a switch, nor interrupts the other. */
@@ -97,9 +110,7 @@ BUILD_ASSERT(TIMER_PRIORITY(NODE(stepper)) == ENCODER_PRIORITY,
 		     "a switch needs an interrupt of a larger number than the edge timer's");      \
 	BUILD_ASSERT(PIN_PRIORITY(node, gpios) < SYSTEM_TIMER_PRIORITY,                            \
 		     "a switch needs an interrupt of a smaller number than the system timer's");   \
-	BUILD_ASSERT(!SHARED(node, gpios, NODE(encoder), a_gpios) &&                               \
-			     !SHARED(node, gpios, NODE(encoder), b_gpios) &&                       \
-			     !INDEX_SHARED(node, gpios),                                           \
+	BUILD_ASSERT(!SHARES_A_OR_B(node, gpios) && !INDEX_SHARED(node, gpios),                    \
 		     "a switch shares an interrupt with the encoder: give it another line");
 #define CHECK_CONTACT(node, gpios)                                                                 \
 	COND_CODE_1(DT_NODE_HAS_PROP(node, gpios), (CHECK_CONTACT_PIN(node, gpios)), ())

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The order of the interrupts: the encoder above all others, then the edge timer, then the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "limits.h"
 
 #include "app.h"
@@ -32,7 +33,7 @@ static struct change change_now(int side, struct lw_contacts contacts)
 {
 	return (struct change){
 		.now_us = app_now_us(),
-		.at = lw_controller_place(&app_device.controller),
+		.at = lw_controller_position(&app_device.controller),
 		.contacts = contacts,
 		.side = (uint8_t)side,
 	};
@@ -83,10 +84,11 @@ static void run(void *unused1, void *unused2, void *unused3)
 
 		watch_report(WATCH_LIMITS);
 		k_mutex_lock(&app_lock, K_FOREVER);
-		if (ret == 0) {
+		/* All of them, before the supervisor judges where the carriage has got to. */
+		for (int more = ret; more == 0; more = k_msgq_get(&changes, &change, K_NO_WAIT)) {
 			take(&change);
 		}
-		if (k_msgq_num_used_get(&changes) == 0 && atomic_clear(&changes_lost)) {
+		if (atomic_clear(&changes_lost)) {
 			catch_up();
 		}
 		k_mutex_unlock(&app_lock);

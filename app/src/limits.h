@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The limit switches: an interrupt keeps where the carriage was at every contact change, the

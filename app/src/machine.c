@@ -1,19 +1,31 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "machine.h"
 
 #include <errno.h>
 
 #include <zephyr/drivers/counter.h>
+#include <zephyr/drivers/gpio.h>
+#include <zephyr/drivers/timer/system_timer.h>
 
 #include "app.h"
 #include "lw/drivers/encoder.h"
 #include "lw/drivers/limit_switch.h"
 #include "lw/drivers/step_dir.h"
+#ifdef CONFIG_LW_STM32_SYSTEM_TIMER
+#include "lw/drivers/system_timer.h"
+#endif
 
 #define MACHINE_DEVICE(property) DEVICE_DT_GET(DT_PHANDLE(APP_NODE, property))
 
 static const struct device *const encoder = MACHINE_DEVICE(encoder);
 static const struct device *const stepper = MACHINE_DEVICE(stepper);
 static const struct device *const edge_timer = MACHINE_DEVICE(edge_timer);
+
+/* Early, late; not wired where the devicetree has none. */
+static const struct gpio_dt_spec trim_buttons[] = {
+	GPIO_DT_SPEC_GET_OR(APP_NODE, trim_early_gpios, {0}),
+	GPIO_DT_SPEC_GET_OR(APP_NODE, trim_late_gpios, {0}),
+};
 
 /* By side. */
 static const struct device *const limits[] = {
@@ -29,15 +41,24 @@ static const struct device *const overtravels[] = {
 static bool stepper_enabled;
 static uint32_t timer_rate_edges_per_s;
 
-/** The driver spaces them. Only a cam gives more than one. */
+/** Direction of the last step, or of the next one where that is prepared. Of who steps. */
+static int direction;
+
+static void prepare(int next)
+{
+	if (next != 0 && next != direction) {
+		direction = next;
+		lw_step_dir_prepare(stepper,
+				    lw_controller_driver_step(&app_device.controller, next));
+	}
+}
+
+/** The driver spaces them. Only a cam, or an interrupt that comes late, gives more than one. */
 static void give_steps(int steps)
 {
-	int left = lw_controller_driver_step(&app_device.controller, steps);
-	const int direction = left > 0 ? 1 : -1;
-
-	while (left != 0) {
-		lw_step_dir_step(stepper, direction);
-		left -= direction;
+	if (steps != 0) {
+		direction = steps > 0 ? 1 : -1;
+		lw_step_dir_step(stepper, lw_controller_driver_step(&app_device.controller, steps));
 	}
 }
 
@@ -52,6 +73,8 @@ static inline uint32_t cycles_left(void)
 {
 #ifdef CONFIG_CORTEX_M_SYSTICK
 	return SysTick->VAL;
+#elif defined(CONFIG_LW_STM32_SYSTEM_TIMER)
+	return 0u - lw_system_timer_cycles();
 #else
 	return 0; /* no time passes on native_sim */
 #endif
@@ -66,30 +89,56 @@ static inline uint32_t cycles_between(uint32_t before, uint32_t after)
 #endif
 }
 
-static void on_encoder(bool a, bool b, void *user_data)
+static void note_time(uint32_t before)
 {
-	const uint32_t before = cycles_left();
-	uint32_t taken;
+	const uint32_t taken = cycles_between(before, cycles_left());
 
-	ARG_UNUSED(user_data);
-	give_steps(lw_controller_encoder(&app_device.controller, a, b));
-	taken = cycles_between(before, cycles_left());
 	if (taken > encoder_interrupt_max_cycles) {
 		encoder_interrupt_max_cycles = taken;
 	}
 }
 
-static void on_encoder_index(void *user_data)
+static void on_encoder(bool a, bool b, void *user_data)
+{
+	const uint32_t before = cycles_left();
+
+	ARG_UNUSED(user_data);
+	give_steps(lw_controller_encoder(&app_device.controller, a, b));
+	note_time(before);
+}
+
+static uint32_t on_encoder_count(int32_t transitions, void *user_data)
+{
+	const uint32_t before = cycles_left();
+	uint32_t due;
+
+	ARG_UNUSED(user_data);
+	give_steps(lw_controller_encoder_count(&app_device.controller, transitions));
+	prepare(lw_controller_turns_to(&app_device.controller, transitions));
+	due = lw_controller_encoder_reach(&app_device.controller, transitions);
+	note_time(before);
+	return due;
+}
+
+static void on_encoder_index(bool late, void *user_data)
 {
 	ARG_UNUSED(user_data);
-	lw_controller_encoder_index(&app_device.controller);
+	if (late) {
+		lw_controller_encoder_index_late(&app_device.controller);
+	} else {
+		lw_controller_encoder_index(&app_device.controller);
+	}
 }
 
 static void on_edge_timer(const struct device *dev, void *user_data)
 {
+	/* The step driver's interrupt is above this one. */
+	const unsigned int key = irq_lock();
+
 	ARG_UNUSED(dev);
 	ARG_UNUSED(user_data);
 	give_steps(lw_controller_timer_edge(&app_device.controller));
+	irq_unlock(key);
 }
 
 static void on_overtravel(struct lw_contacts contacts, void *user_data)
@@ -129,15 +178,29 @@ int machine_check(void)
 			return -ENODEV;
 		}
 	}
+	for (size_t i = 0; i < ARRAY_SIZE(trim_buttons); i++) {
+		if (trim_buttons[i].port != NULL && !gpio_is_ready_dt(&trim_buttons[i])) {
+			return -ENODEV;
+		}
+	}
 	return 0;
 }
 
-/** An alarm that is not wired is none. */
+/** Polls for which lost steps are told as an alarm: more than the controller needs to believe it.
+ */
+#define LOST_POLLS 10
+
+/** An alarm that is not wired is none. A motor that cannot be given its steps is one. */
 static int read_alarm(bool *alarm)
 {
+	static unsigned int lost_polls;
 	const int ret = lw_step_dir_alarm(stepper);
 
-	*alarm = ret > 0;
+	if (lw_step_dir_take_lost(stepper)) {
+		lost_polls = LOST_POLLS;
+	}
+	*alarm = ret > 0 || lost_polls > 0;
+	lost_polls -= lost_polls > 0;
 	return ret == -ENOTSUP ? 0 : MIN(ret, 0);
 }
 
@@ -167,7 +230,15 @@ int machine_read(struct lw_inputs *inputs)
 
 int machine_start(void)
 {
-	int ret = lw_encoder_start(encoder, on_encoder, NULL);
+	int ret = lw_encoder_counts(encoder)
+			  ? lw_encoder_start_counting(encoder, on_encoder_count, NULL)
+			  : lw_encoder_start(encoder, on_encoder, NULL);
+
+	for (size_t i = 0; i < ARRAY_SIZE(trim_buttons) && ret == 0; i++) {
+		if (trim_buttons[i].port != NULL) {
+			ret = gpio_pin_configure_dt(&trim_buttons[i], GPIO_INPUT);
+		}
+	}
 
 	if (ret == 0) {
 		ret = lw_encoder_start_index(encoder, on_encoder_index, NULL);
@@ -182,17 +253,43 @@ int machine_start(void)
 	return ret;
 }
 
+/** Levels of the buttons; one that is not wired is not pressed. */
+static int poll_trim_buttons(void)
+{
+	bool pressed[ARRAY_SIZE(trim_buttons)] = {false};
+
+	for (size_t i = 0; i < ARRAY_SIZE(trim_buttons); i++) {
+		const int level =
+			trim_buttons[i].port == NULL ? 0 : gpio_pin_get_dt(&trim_buttons[i]);
+
+		if (level < 0) {
+			return level;
+		}
+		pressed[i] = level > 0;
+	}
+	lw_device_trim_buttons(&app_device, pressed);
+	return 0;
+}
+
 int machine_poll(void)
 {
 	bool alarm;
-	const int ret = read_alarm(&alarm);
+	int ret = read_alarm(&alarm);
+
+	lw_encoder_poll(encoder);
 
 	if (ret == 0) {
 		lw_controller_stepper_alarm(&app_device.controller, alarm);
+		ret = poll_trim_buttons();
 	}
 	app_device.health.encoder_interrupt_max_ns =
 		k_cyc_to_ns_ceil32(encoder_interrupt_max_cycles);
 	return ret;
+}
+
+bool machine_keeps_edges(void)
+{
+	return lw_encoder_counts(encoder);
 }
 
 void machine_stop(void)

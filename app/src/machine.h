@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The machine as the controller sees it: its pins through their drivers, and the timer that makes
@@ -6,7 +7,7 @@
 #ifndef MACHINE_H
 #define MACHINE_H
 
-#include "lw/controller.h"
+#include "lw/control/controller.h"
 
 /**
  * Are all drivers of the machine there? Not for interrupt context.
@@ -41,6 +42,9 @@ int machine_start(void);
  * @retval <0 errno of a driver
  */
 int machine_poll(void);
+
+/** Are the encoder's edges counted in hardware, also while the processor stands? */
+bool machine_keeps_edges(void);
 
 /** Take the current from the stepper, whatever the controller wants. Interrupt safe. */
 void machine_stop(void);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The firmware's start, and the supervisor that follows it in the main thread.
  */
@@ -7,8 +8,11 @@
 #include <zephyr/logging/log.h>
 
 #include "app.h"
+#include "clock.h"
+#include "image.h"
 #include "interrupts.h"
 #include "limits.h"
+#include "line_driver.h"
 #include "machine.h"
 #include "modbus.h"
 #include "storage.h"
@@ -73,7 +77,12 @@ static int start(void)
 {
 	int ret = machine_check();
 
+	config.image_hash = image_sha256_head();
 	config.watchdog_reset = watch_has_restarted();
+	config.clock_fallback = clock_is_fallback();
+	config.unstored = watch_unstored_starts();
+	config.kept = watch_kept();
+	config.edges_are_kept = machine_keeps_edges();
 	if (ret == 0) {
 		ret = read_default_settings(&config.default_line);
 	}
@@ -110,8 +119,13 @@ static int supervise(void)
 	k_mutex_lock(&app_lock, K_FOREVER);
 	ret = machine_poll();
 #ifdef CONFIG_LW_SIMULATED_MACHINE
-	if (ret == 0 && simulated_machine_power_cut()) {
-		config.watchdog_reset = false;
+	bool memory_kept;
+
+	if (ret == 0 && simulated_machine_power_cut(&memory_kept)) {
+		config.watchdog_reset = memory_kept;
+		if (!memory_kept) {
+			*config.kept = (struct lw_kept){0};
+		}
 		ret = power_up();
 	}
 	simulated_machine_note_indexed(app_device.controller.indexed);
@@ -137,7 +151,7 @@ int main(void)
 
 	interrupts_start();
 	k_thread_priority_set(k_current_get(), APP_PRIORITY_SUPERVISOR);
-	(void)modbus_let_go();
+	(void)line_driver_let_go();
 	ret = watch_start();
 	if (ret == 0) {
 		ret = start();

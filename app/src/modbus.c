@@ -1,34 +1,35 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "modbus.h"
 
 #include <errno.h>
-#include <string.h>
 
-#include <zephyr/drivers/gpio.h>
+#ifdef CONFIG_UART_STM32
+#include <zephyr/drivers/clock_control/stm32_clock_control.h>
+#endif
 #include <zephyr/drivers/uart.h>
 #include <zephyr/logging/log.h>
 
 #include "app.h"
+#include "line_driver.h"
 #include "watch.h"
 
 LOG_MODULE_DECLARE(levelwind);
 
 static const struct device *const uart = DEVICE_DT_GET(DT_PHANDLE(APP_NODE, modbus_uart));
-static const struct gpio_dt_spec driver_enable =
-	GPIO_DT_SPEC_GET_OR(APP_NODE, driver_enable_gpios, {0});
 
-static K_THREAD_STACK_DEFINE(stack, 1792);
+static K_THREAD_STACK_DEFINE(stack, 1536);
 static struct k_thread thread;
 
-/** What has been received. */
-struct reception {
-	uint64_t last_byte_us;
-	size_t length; /**< one more than a frame can have stands for too much */
-	uint8_t bytes[LW_RTU_FRAME_MAX + 1];
-};
-
-/* The interrupt fills one, the thread works on the other; it swaps them with interrupts locked. */
-static struct reception receptions[2];
-static struct reception *rx = &receptions[0];
+/*
+ * What has come, each byte with its time: so the first one after a silence begins a new frame,
+ * however late the thread looks. The interrupt fills, the thread takes, after every silence: it has
+ * to be room for what comes meanwhile, a whole frame where bytes come in lots.
+ */
+#define RX_SIZE (CONFIG_LW_MODBUS_SILENCE_US > 0 ? 512u : 128u)
+static uint8_t rx_bytes[RX_SIZE];
+static uint16_t rx_ticks[RX_SIZE]; /**< low bits of the kernel's; the thread looks soon enough */
+static volatile uint32_t rx_end;   /**< written by the interrupt; counts on */
+static volatile uint32_t rx_taken; /**< written by the thread, or under its hold */
 static K_SEM_DEFINE(rx_begun, 0, 1);
 
 /* What is being sent. The thread's while it holds tx_free, else the interrupt's. */
@@ -37,28 +38,36 @@ static struct {
 	size_t sent;
 	uint8_t bytes[LW_RTU_FRAME_MAX];
 } tx;
-static bool sending; /**< likewise */
 static K_SEM_DEFINE(tx_free, 1, 1);
+
+/* Written by who holds tx_free for longer; the thread is above, so it cannot come in between. */
+static bool held;
+
+#ifdef CONFIG_UART_STM32
+/* Its driver puts the low 16 bits of a divider into the register, and says that all is well. */
+#define UART_CLOCKS DT_CLOCKS_CELL(DT_PHANDLE(APP_NODE, modbus_uart), bus)
+#define UART_PRESCALER                                                                             \
+	(UART_CLOCKS == STM32_CLOCK_BUS_APB1 ? STM32_APB1_PRESCALER : STM32_APB2_PRESCALER)
+#define LOWEST_BAUD_RATE 1200
+BUILD_ASSERT(DT_PROP(DT_NODELABEL(rcc), clock_frequency) / UART_PRESCALER / LOWEST_BAUD_RATE <=
+		     UINT16_MAX,
+	     "the UART's clock is too fast for 1200 baud: a larger prescaler of its bus");
+#endif
 
 /** What the UART is configured to. The thread's, once it runs. */
 static struct lw_line configured;
 
 static void receive(void)
 {
+	const uint16_t ticks = (uint16_t)k_uptime_ticks();
 	uint8_t bytes[32];
 	const int count = uart_fifo_read(uart, bytes, sizeof(bytes));
 
-	/* On a two-wire line everything that is sent is heard, too. */
-	if (count <= 0 || (driver_enable.port != NULL && sending)) {
-		return;
+	for (int i = 0; i < count && rx_end - rx_taken < RX_SIZE; i++) {
+		rx_bytes[rx_end % RX_SIZE] = bytes[i];
+		rx_ticks[rx_end % RX_SIZE] = ticks;
+		rx_end++;
 	}
-
-	const size_t room = sizeof(rx->bytes) - rx->length;
-	const size_t taken = MIN((size_t)count, room);
-
-	memcpy(&rx->bytes[rx->length], bytes, taken);
-	rx->length += taken;
-	rx->last_byte_us = app_now_us();
 	k_sem_give(&rx_begun);
 }
 
@@ -71,10 +80,7 @@ static void send(void)
 		tx.sent += count > 0 ? (size_t)count : 0;
 	} else if (uart_irq_tx_complete(uart)) {
 		uart_irq_tx_disable(uart);
-		if (driver_enable.port != NULL) {
-			(void)gpio_pin_set_dt(&driver_enable, 0);
-		}
-		sending = false;
+		line_driver_switch(false);
 		k_sem_give(&tx_free);
 	}
 }
@@ -92,41 +98,27 @@ static void on_uart(const struct device *dev, void *user_data)
 	}
 }
 
-/**
- * Wait until the line has been silent after some bytes, and take them. One kernel timeout for each
- * silence, not for each byte.
- *
- * @return what has come, valid until the next call; NULL if nothing has for a while
- */
-static const struct reception *wait_for_frame(void)
+/** Hand over what has come, each byte at its time. */
+static void hear(struct lw_slave *slave)
 {
-	const uint32_t silence_us = app_device.slave_config.rtu.silence_us;
-	uint32_t wait_us = silence_us;
+	while (rx_taken != rx_end) {
+		const uint32_t at = rx_taken % RX_SIZE;
+		const uint64_t now_ticks = (uint64_t)k_uptime_ticks();
+		const uint16_t age_ticks = (uint16_t)((uint16_t)now_ticks - rx_ticks[at]);
+		const uint8_t byte = rx_bytes[at];
 
-	if (k_sem_take(&rx_begun, WATCH_PERIOD) != 0) {
-		return NULL;
+		rx_taken++;
+		lw_slave_receive(slave, &byte, 1, k_ticks_to_us_floor64(now_ticks - age_ticks));
 	}
-	for (;;) {
-		const struct reception *frame = NULL;
+}
 
-		k_usleep((int32_t)wait_us);
-
-		/* The encoder waits for this, too: no copying here. */
-		const unsigned int key = irq_lock();
-		const uint64_t silent_us = app_now_us() - rx->last_byte_us;
-
-		if (silent_us >= silence_us) {
-			frame = rx;
-			rx = rx == &receptions[0] ? &receptions[1] : &receptions[0];
-			rx->length = 0;
-			k_sem_reset(&rx_begun);
-		}
-		irq_unlock(key);
-		if (frame != NULL) {
-			return frame;
-		}
-		wait_us = (uint32_t)(silence_us - silent_us);
+/** Drop what has come. */
+static void lose(struct lw_slave *slave)
+{
+	if (rx_taken != rx_end || lw_slave_deadline_us(slave) != UINT64_MAX) {
+		lw_slave_lose(slave);
 	}
+	rx_taken = rx_end;
 }
 
 #ifdef CONFIG_UART_USE_RUNTIME_CONFIGURE
@@ -175,10 +167,17 @@ static void wait_until_sent(enum watch_thread caller)
 void modbus_hold(enum watch_thread caller)
 {
 	wait_until_sent(caller);
+	held = true;
 }
 
-void modbus_release(void)
+void modbus_release(bool has_stood_still)
 {
+	if (has_stood_still) {
+		k_mutex_lock(&app_lock, K_FOREVER);
+		lose(&app_device.slave);
+		k_mutex_unlock(&app_lock);
+	}
+	held = false;
 	k_sem_give(&tx_free);
 }
 
@@ -201,47 +200,68 @@ static void follow_line_settings(void)
 	configured = line;
 }
 
+/**
+ * Take what has come, and begin to answer a request that is complete.
+ *
+ * @return when to look again; UINT64_MAX: when something comes
+ */
+static uint64_t answer(void)
+{
+	struct lw_slave *slave = &app_device.slave;
+	const bool may_send = k_sem_take(&tx_free, K_NO_WAIT) == 0;
+	uint64_t deadline_us = app_now_us() + slave->config->rtu.silence_us;
+	size_t length = 0;
+
+	k_sem_reset(&rx_begun);
+	k_mutex_lock(&app_lock, K_FOREVER);
+	if (!held) {
+		hear(slave);
+	}
+	if (may_send) {
+		length = lw_slave_poll(slave, app_now_us(), tx.bytes);
+		deadline_us = lw_slave_deadline_us(slave);
+	}
+	k_mutex_unlock(&app_lock);
+	if (length > 0) {
+		tx.length = length;
+		tx.sent = 0;
+		line_driver_switch(true);
+		uart_irq_tx_enable(uart);
+	} else if (may_send) {
+		k_sem_give(&tx_free);
+	}
+	return deadline_us;
+}
+
+/** One kernel timeout for each silence, not for each byte. */
 static void run(void *unused1, void *unused2, void *unused3)
 {
+	uint64_t deadline_us = UINT64_MAX;
+
 	ARG_UNUSED(unused1);
 	ARG_UNUSED(unused2);
 	ARG_UNUSED(unused3);
 	for (;;) {
+		uint64_t now_us;
+
 		follow_line_settings();
+		if (deadline_us == UINT64_MAX) {
+			const int begun = k_sem_take(&rx_begun, WATCH_PERIOD);
 
-		const struct reception *frame = wait_for_frame();
-		struct lw_slave *slave = &app_device.slave;
-
+			watch_report(WATCH_MODBUS);
+			if (begun != 0) {
+				continue;
+			}
+			deadline_us = app_now_us() + app_device.slave_config.rtu.silence_us;
+		}
+		now_us = app_now_us();
+		if (now_us < deadline_us) {
+			k_usleep((int32_t)(deadline_us - now_us));
+		}
+		/* Also while the line is never silent. */
 		watch_report(WATCH_MODBUS);
-		if (frame == NULL) {
-			continue;
-		}
-		wait_until_sent(WATCH_MODBUS);
-		k_mutex_lock(&app_lock, K_FOREVER);
-		lw_slave_receive(slave, frame->bytes, frame->length, frame->last_byte_us);
-		tx.length = lw_slave_poll(slave, app_now_us(), tx.bytes);
-		k_mutex_unlock(&app_lock);
-		tx.sent = 0;
-		if (tx.length == 0) {
-			k_sem_give(&tx_free);
-			continue;
-		}
-		sending = true;
-		if (driver_enable.port != NULL) {
-			(void)gpio_pin_set_dt(&driver_enable, 1);
-		}
-		uart_irq_tx_enable(uart);
+		deadline_us = answer();
 	}
-}
-
-int modbus_let_go(void)
-{
-	if (driver_enable.port == NULL) {
-		return 0;
-	}
-	return gpio_is_ready_dt(&driver_enable)
-		       ? gpio_pin_configure_dt(&driver_enable, GPIO_OUTPUT_INACTIVE)
-		       : -ENODEV;
 }
 
 int modbus_start(void)
@@ -251,7 +271,7 @@ int modbus_start(void)
 	if (!device_is_ready(uart)) {
 		return -ENODEV;
 	}
-	ret = modbus_let_go();
+	ret = line_driver_let_go();
 	if (ret == 0) {
 		configured = app_device.line;
 		ret = configure_line(&configured);

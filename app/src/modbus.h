@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The Modbus line: the UART's interrupt moves bytes, the Modbus thread hands frames to the core's
@@ -6,17 +7,9 @@
 #ifndef MODBUS_H
 #define MODBUS_H
 
-#include "watch.h"
+#include <stdbool.h>
 
-/**
- * Let go of a two-wire line, whatever is being sent. First of all at power-up, for until then the
- * pin floats, and last of all before a restart. Interrupt safe.
- *
- * @retval 0 done
- * @retval -ENODEV the pin is missing
- * @retval <0 errno of its driver
- */
-int modbus_let_go(void);
+#include "watch.h"
 
 /**
  * Configure the line by the stored parameters and begin to answer. app_device must be initialized.
@@ -38,7 +31,12 @@ int modbus_start(void);
  */
 void modbus_hold(enum watch_thread caller);
 
-/** Let answers be sent again. By the thread that called modbus_hold(). */
-void modbus_release(void);
+/**
+ * Let answers be sent again. By the thread that called modbus_hold().
+ *
+ * @param has_stood_still the processor and its clock have stood still meanwhile: nobody knows how
+ *        long ago came what has come, so it is dropped
+ */
+void modbus_release(bool has_stood_still);
 
 #endif /* MODBUS_H */

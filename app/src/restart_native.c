@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * On native_sim a restart is a new process. It keeps what survives a restart of a real processor:
  * the flash, a file, and the watchdog's note.

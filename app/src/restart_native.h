@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A restart on native_sim: what the runner (restart_native_bottom.c), which is a program of the

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Settings in two logs, each one half of the storage partition.
  *
@@ -53,6 +54,7 @@ struct log {
 static const struct flash_area *area;
 static struct log in_force;
 static uint32_t sequence; /**< of the last save that was tried */
+static bool has_erased;
 
 static size_t log_size(void)
 {
@@ -223,12 +225,22 @@ static int copy(struct log *to, size_t from)
 	return check(to, ret);
 }
 
+bool settings_backend_has_erased(void)
+{
+	const bool had = has_erased;
+
+	has_erased = false;
+	return had;
+}
+
 /** Erase a log, and look whether it is blank: not every driver knows that its erasure failed. */
 static int erase(const struct log *log)
 {
 	const uint8_t blank = flash_area_erased_val(area);
 	uint8_t block[BLOCK_SIZE];
 	int ret = flash_area_flatten(area, log->start, log_size());
+
+	has_erased = true;
 
 	for (size_t at = 0; ret == 0 && at < log_size(); at += sizeof(block)) {
 		ret = read_log(log, at, block, sizeof(block));

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Where Zephyr's settings are kept (CONFIG_SETTINGS_CUSTOM): two logs, each one half of the storage
@@ -6,6 +7,8 @@
  */
 #ifndef SETTINGS_BACKEND_H
 #define SETTINGS_BACKEND_H
+
+#include <stdbool.h>
 
 #include <zephyr/sys/util.h>
 
@@ -26,5 +29,8 @@
 #define SETTINGS_BACKEND_ENTRY_SIZE(value_size)                                                    \
 	ROUND_UP(4 * sizeof(uint32_t) + SETTINGS_BACKEND_NAME_SIZE + (value_size),                 \
 		 SETTINGS_BACKEND_ALIGN)
+
+/** Has a log been erased since the last call? Not for interrupt context. */
+bool settings_backend_has_erased(void);
 
 #endif /* SETTINGS_BACKEND_H */

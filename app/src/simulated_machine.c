@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "simulated_machine.h"
 
 #include <zephyr/drivers/gpio.h>
@@ -17,6 +18,10 @@ static const struct gpio_dt_spec step = MACHINE_PIN(stepper, step_gpios);
 static const struct gpio_dt_spec dir = MACHINE_PIN(stepper, dir_gpios);
 static const struct gpio_dt_spec enable = MACHINE_PIN(stepper, enable_gpios);
 static const struct gpio_dt_spec alarm = MACHINE_PIN(stepper, alarm_gpios);
+static const struct gpio_dt_spec trim_buttons[] = {
+	GPIO_DT_SPEC_GET(APP_NODE, trim_early_gpios),
+	GPIO_DT_SPEC_GET(APP_NODE, trim_late_gpios),
+};
 static const struct {
 	struct gpio_dt_spec no;
 	struct gpio_dt_spec nc;
@@ -90,6 +95,13 @@ static void set_switches(uint32_t changed)
 	}
 }
 
+static void set_trim_buttons(void)
+{
+	for (size_t i = 0; i < ARRAY_SIZE(trim_buttons); i++) {
+		set_input(&trim_buttons[i], plant.pins.trim_buttons[i]);
+	}
+}
+
 /**
  * Bring every event up to now, each with the controller's answer to it. The interrupt is kept out,
  * or is the caller.
@@ -109,6 +121,9 @@ static void bring_events(void)
 		set_switches(changed);
 		if (changed & LW_PLANT_STEPPER_ALARM) {
 			set_input(&alarm, plant.pins.stepper_alarm);
+		}
+		if (changed & LW_PLANT_TRIM_BUTTONS) {
+			set_trim_buttons();
 		}
 	}
 	bringing = false;
@@ -183,6 +198,7 @@ int simulated_machine_start(void)
 
 	set_encoder(LW_PLANT_ENCODER | LW_PLANT_ENCODER_INDEX);
 	set_input(&alarm, plant.pins.stepper_alarm);
+	set_trim_buttons();
 	set_switches(UINT32_MAX);
 	gpio_init_callback(&outputs, on_output, BIT(step.pin) | BIT(enable.pin));
 	ret = gpio_add_callback(step.port, &outputs);
@@ -241,10 +257,11 @@ void simulated_machine_hang(int thread)
 	}
 }
 
-bool simulated_machine_power_cut(void)
+bool simulated_machine_power_cut(bool *memory_kept)
 {
 	const bool power_cut = bench.power_cut;
 
 	bench.power_cut = false;
+	*memory_kept = bench.memory_kept;
 	return power_cut;
 }

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A simulated machine at the controller's pins: the plant (lw/plant.h) moves the inputs of the
@@ -12,7 +13,7 @@
 
 #include <stdbool.h>
 
-#include "lw/bank.h"
+#include "lw/modbus/bank.h"
 #include "lw/map.h"
 
 /**
@@ -42,6 +43,6 @@ void simulated_machine_note_restart(enum lw_bench_restart restart);
 void simulated_machine_hang(int thread);
 
 /** Has the bench asked for a restart of the controller? Tells it once. */
-bool simulated_machine_power_cut(void);
+bool simulated_machine_power_cut(bool *memory_kept);
 
 #endif /* SIMULATED_MACHINE_H */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "storage.h"
 
 #include <string.h>
@@ -14,20 +15,21 @@
 
 /** Names of the settings, by slot. The first is as old as the firmware. */
 static const char *const names[LW_STORE_SLOTS] = {
-	TREE "/parameters", TREE "/parameters_b", TREE "/journal",
-	TREE "/journal_b",  TREE "/cam",          TREE "/cam_b",
+	TREE "/parameters", TREE "/parameters_b", TREE "/journal", TREE "/journal_b",
+	TREE "/cam",        TREE "/cam_b",        TREE "/look",    TREE "/look_b",
 };
 
 /* Of each pair both slots. */
 BUILD_ASSERT(FIXED_PARTITION_SIZE(storage_partition) / 2 >=
 		     2 * (SETTINGS_BACKEND_ENTRY_SIZE(LW_PARAM_RECORD_SIZE) +
 			  SETTINGS_BACKEND_ENTRY_SIZE(LW_STORE_JOURNAL_SIZE) +
-			  SETTINGS_BACKEND_ENTRY_SIZE(LW_STORE_CAM_SIZE)) +
+			  SETTINGS_BACKEND_ENTRY_SIZE(LW_STORE_CAM_SIZE) +
+			  SETTINGS_BACKEND_ENTRY_SIZE(LW_LOOK_RECORD_SIZE)) +
 			     SETTINGS_BACKEND_ENTRY_SIZE(LW_STORE_SLOT_SIZE),
 	     "storage_partition is too small for what settings_backend.h asks for");
 BUILD_ASSERT(LW_STORE_SLOTS <= SETTINGS_BACKEND_VALUES_MAX);
 
-static K_THREAD_STACK_DEFINE(stack, 1536);
+static K_THREAD_STACK_DEFINE(stack, 1024);
 static struct k_work_q queue;
 static uint8_t bytes[LW_STORE_SLOT_SIZE]; /**< owned by the work while `writing` */
 static size_t length;                     /**< likewise */
@@ -41,10 +43,14 @@ static void write_slot(struct k_work *work)
 	ARG_UNUSED(work);
 	modbus_hold(WATCH_STORAGE);
 	ret = settings_save_one(names[slot], bytes, length);
-	modbus_release();
+	modbus_release(settings_backend_has_erased() &&
+		       IS_ENABLED(CONFIG_LW_FLASH_STOPS_PROCESSOR));
 	k_mutex_lock(&app_lock, K_FOREVER);
 	writing = false;
 	lw_device_end_write(&app_device, ret);
+	if (ret == 0 && slot / 2 == LW_STORE_JOURNAL / 2) {
+		watch_stored();
+	}
 	k_mutex_unlock(&app_lock);
 }
 

@@ -1,12 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * The storage: the slots of the core (lw/store.h) in Zephyr's settings, one value each. They are
- * written by a work queue of their own, the least urgent thread.
+ * The storage: the slots of the core (lw/storage/store.h) in Zephyr's settings, one value each.
+ * They are written by a work queue of their own, the least urgent thread.
  */
 #ifndef STORAGE_H
 #define STORAGE_H
 
-#include "lw/store.h"
+#include "lw/storage/store.h"
 
 /**
  * Start the storage. Not for interrupt context.

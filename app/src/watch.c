@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "watch.h"
 
 #include <zephyr/drivers/hwinfo.h>
@@ -6,8 +7,9 @@
 #include <zephyr/task_wdt/task_wdt.h>
 
 #include "app.h"
+#include "line_driver.h"
+#include "lw/drivers/system_timer.h"
 #include "machine.h"
-#include "modbus.h"
 #ifdef CONFIG_LW_SIMULATED_MACHINE
 #include "simulated_machine.h"
 #endif
@@ -18,18 +20,34 @@
 
 __noinit uint32_t watch_note;
 
+/** What the journal lacks. A power-up leaves anything here, so a pattern says that it is ours. */
+static __noinit struct {
+	uint32_t pattern;
+	struct lw_unstored_starts starts;
+} unstored;
+
+/** What the device keeps of a launch; it seals it itself. */
+static __noinit struct lw_kept kept;
+
+#define UNSTORED_PATTERN 0x756E7374u
+
+/** Those before this one. */
+static struct lw_unstored_starts before;
+
+/** Between two interrupts of the kernel's clock: above any time without a tick, below a second. */
+#define STOOD_STILL_MS 100
+
 K_KERNEL_STACK_ARRAY_DECLARE(z_interrupt_stacks, CONFIG_MP_MAX_NUM_CPUS, CONFIG_ISR_STACK_SIZE);
 
 static bool by_watchdog;
 static int channels[WATCH_THREADS];
 static k_tid_t threads[WATCH_THREADS]; /**< each written by the thread itself, once */
 
-/** From any context, a processor's fault included. */
-static FUNC_NORETURN void restart(void)
+FUNC_NORETURN void watch_restart(void)
 {
 	(void)irq_lock();
 	machine_stop();
-	(void)modbus_let_go();
+	(void)line_driver_let_go();
 	watch_note = NOTE_WATCHDOG;
 #ifdef CONFIG_LW_SIMULATED_MACHINE
 	if (simulated_machine_has_current()) {
@@ -42,9 +60,17 @@ static FUNC_NORETURN void restart(void)
 /** In the system timer's interrupt. */
 static void on_timeout(int channel, void *user_data)
 {
-	ARG_UNUSED(channel);
 	ARG_UNUSED(user_data);
-	restart();
+#ifdef CONFIG_LW_STM32_SYSTEM_TIMER
+	/* The processor stood still, for its flash was erased: no thread could report. */
+	if (lw_system_timer_gap_ms() > STOOD_STILL_MS) {
+		(void)task_wdt_feed(channel);
+		return;
+	}
+#else
+	ARG_UNUSED(channel);
+#endif
+	watch_restart();
 }
 
 /** In place of the kernel's, which would stand still with the current on. */
@@ -52,7 +78,7 @@ void k_sys_fatal_error_handler(unsigned int reason, const struct arch_esf *esf)
 {
 	ARG_UNUSED(reason);
 	ARG_UNUSED(esf);
-	restart();
+	watch_restart();
 }
 
 int watch_start(void)
@@ -67,6 +93,10 @@ int watch_start(void)
 					       : LW_BENCH_RESTART_WITHOUT_CURRENT);
 #endif
 	watch_note = 0;
+	if (unstored.pattern != UNSTORED_PATTERN) {
+		unstored.starts = (struct lw_unstored_starts){0};
+		unstored.pattern = UNSTORED_PATTERN;
+	}
 #ifdef CONFIG_HWINFO
 	uint32_t cause;
 
@@ -75,7 +105,25 @@ int watch_start(void)
 		(void)hwinfo_clear_reset_cause();
 	}
 #endif
+	before = unstored.starts;
+	unstored.starts.boots++;
+	unstored.starts.watchdog_resets += by_watchdog;
 	return task_wdt_init(watchdog);
+}
+
+struct lw_kept *watch_kept(void)
+{
+	return &kept;
+}
+
+struct lw_unstored_starts watch_unstored_starts(void)
+{
+	return before;
+}
+
+void watch_stored(void)
+{
+	unstored.starts = (struct lw_unstored_starts){0};
 }
 
 bool watch_has_restarted(void)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Every thread reports that it gets on with its work. A watchdog restarts the controller when one
@@ -8,7 +9,9 @@
 #ifndef WATCH_H
 #define WATCH_H
 
-#include "lw/device.h"
+#include <zephyr/toolchain.h>
+
+#include "lw/device/device.h"
 
 /** The threads that are watched. */
 enum watch_thread {
@@ -40,6 +43,15 @@ int watch_start(void);
 /** Was the last restart made by the watchdog or a fatal error? */
 bool watch_has_restarted(void);
 
+/** Memory that a restart does not touch; after a power-up anything stands there. */
+struct lw_kept *watch_kept(void);
+
+/** Starts that the journal does not know of: it is written 2 s after one. */
+struct lw_unstored_starts watch_unstored_starts(void);
+
+/** The journal has been stored, this start in it. Not for interrupt context. */
+void watch_stored(void);
+
 /**
  * From now on a thread must report. Not for interrupt context.
  *
@@ -47,6 +59,12 @@ bool watch_has_restarted(void);
  * @retval -ENOMEM no channel of the task watchdog is left
  */
 int watch_add(enum watch_thread thread);
+
+/**
+ * Restart at once: the stepper loses its current first, and the line its driver. From any context,
+ * a processor's fault included.
+ */
+FUNC_NORETURN void watch_restart(void);
 
 /** The calling thread gets on with its work. */
 void watch_report(enum watch_thread thread);

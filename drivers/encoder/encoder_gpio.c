@@ -1,9 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #define DT_DRV_COMPAT levelwind_encoder_gpio
 
 #include <errno.h>
 
 #include <zephyr/drivers/gpio.h>
 
+#include "encoder_index.h"
 #include "lw/drivers/encoder.h"
 
 struct encoder_config {
@@ -17,11 +19,9 @@ struct encoder_data {
 	const struct device *dev;
 	lw_encoder_callback callback;
 	void *user_data;
-	lw_encoder_index_callback index_callback;
-	void *index_user_data;
 	struct gpio_callback a_gpio;
 	struct gpio_callback b_gpio; /**< used if B is on another port than A */
-	struct gpio_callback index_gpio;
+	struct encoder_index index;
 };
 
 static bool level(const struct gpio_dt_spec *pin, gpio_port_value_t levels)
@@ -78,11 +78,11 @@ static void on_b(const struct device *port, struct gpio_callback *gpio, gpio_por
 
 static void on_index(const struct device *port, struct gpio_callback *gpio, gpio_port_pins_t pins)
 {
-	const struct encoder_data *data = CONTAINER_OF(gpio, struct encoder_data, index_gpio);
+	const struct encoder_data *data = CONTAINER_OF(gpio, struct encoder_data, index.gpio);
 
 	ARG_UNUSED(port);
 	ARG_UNUSED(pins);
-	data->index_callback(data->index_user_data);
+	data->index.callback(false, data->index.user_data);
 }
 
 static int encoder_start(const struct device *dev, lw_encoder_callback callback, void *user_data)
@@ -119,16 +119,8 @@ static int encoder_start_index(const struct device *dev, lw_encoder_index_callba
 {
 	const struct encoder_config *config = dev->config;
 	struct encoder_data *data = dev->data;
-	int ret;
 
-	if (config->index.port == NULL) {
-		return -ENOTSUP;
-	}
-	data->index_callback = callback;
-	data->index_user_data = user_data;
-	gpio_init_callback(&data->index_gpio, on_index, BIT(config->index.pin));
-	ret = gpio_add_callback_dt(&config->index, &data->index_gpio);
-	return ret ? ret : gpio_pin_interrupt_configure_dt(&config->index, GPIO_INT_EDGE_TO_ACTIVE);
+	return encoder_index_start(&data->index, &config->index, on_index, callback, user_data);
 }
 
 static int encoder_init(const struct device *dev)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #define DT_DRV_COMPAT levelwind_limit_switch
 
 #include <errno.h>

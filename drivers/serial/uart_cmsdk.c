@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * UART of the Arm Cortex-M System Design Kit, interrupt-driven. Zephyr's own driver for it
  * (arm,cmsdk-uart) reports interrupts that are not enabled, and never begins to receive if a byte

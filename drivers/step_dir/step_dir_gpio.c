@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #define DT_DRV_COMPAT levelwind_step_dir_gpio
 
 #include <errno.h>
@@ -45,7 +46,7 @@ static void wait_ns(uint32_t duration_ns)
 	}
 }
 
-static void step_dir_step(const struct device *dev, int direction)
+static void step_dir_prepare(const struct device *dev, int direction)
 {
 	const struct step_dir_config *config = dev->config;
 	struct step_dir_data *data = dev->data;
@@ -55,6 +56,10 @@ static void step_dir_step(const struct device *dev, int direction)
 		(void)gpio_pin_set_dt(&config->pins.dir, direction > 0);
 		wait_ns(config->dir_setup_ns);
 	}
+}
+
+static void give_pulse(const struct step_dir_config *config)
+{
 	(void)gpio_pin_set_dt(&config->step, 1);
 	wait_ns(config->step_pulse_ns);
 	(void)gpio_pin_set_dt(&config->step, 0);
@@ -63,6 +68,21 @@ static void step_dir_step(const struct device *dev, int direction)
 	 * find out when the last pulse ended.
 	 */
 	wait_ns(config->rest_ns);
+}
+
+static void step_dir_step(const struct device *dev, int steps)
+{
+	step_dir_prepare(dev, steps > 0 ? 1 : -1);
+	for (int left = steps > 0 ? steps : -steps; left > 0; left--) {
+		give_pulse(dev->config);
+	}
+}
+
+/** Steps wait in the interrupt. */
+static bool step_dir_take_lost(const struct device *dev)
+{
+	ARG_UNUSED(dev);
+	return false;
 }
 
 static int step_dir_enable(const struct device *dev, bool enabled)
@@ -85,6 +105,8 @@ static int step_dir_init(const struct device *dev)
 
 static const struct lw_step_dir_api step_dir_api = {
 	.step = step_dir_step,
+	.prepare = step_dir_prepare,
+	.take_lost = step_dir_take_lost,
 	.enable = step_dir_enable,
 	.alarm = step_dir_alarm,
 };

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The pins of a stepper driver that every step and direction output has beside the step pin.

@@ -1,35 +1,35 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Step and direction outputs with the pulse made by a timer of an STM32 in one-pulse mode: no
- * waiting in the interrupt that steps. PWM mode 2: the output is inactive below the compare value,
- * active from there to the end of the period, where the counter stops.
+ * waiting in the interrupt that steps. PWM mode 1 with preload: the output is active below the
+ * compare value, which an update by software brings into force, so that the pulse begins at once.
+ * By then the preloaded value is 0 again, which comes into force at the end of the period, where
+ * the counter stops: a standing timer gives no pulse.
  */
 #define DT_DRV_COMPAT levelwind_step_dir_stm32
 
 #include <errno.h>
 
 #include <soc.h>
-#include <stm32_ll_rcc.h>
 #include <stm32_ll_tim.h>
-#include <zephyr/drivers/clock_control/stm32_clock_control.h>
 #include <zephyr/drivers/pinctrl.h>
-#include <zephyr/drivers/reset.h>
 #include <zephyr/irq.h>
 #include <zephyr/logging/log.h>
 
+#include "../stm32_timer.h"
 #include "lw/drivers/step_dir.h"
 #include "step_dir_pins.h"
 #include "step_train.h"
 
 LOG_MODULE_REGISTER(step_dir_stm32);
 
-/** Longest run, and the compare value that no run reaches: the timer may have 16 bits. */
+/** Longest run: the timer may have 16 bits. */
 #define TICKS_MAX UINT16_MAX
-#define NO_PULSE  UINT16_MAX
+#define NO_PULSE  0
 
 struct step_dir_config {
 	TIM_TypeDef *timer;
-	struct stm32_pclken clock;
-	struct reset_dt_spec reset;
+	struct lw_stm32_timer source;
 	const struct pinctrl_dev_config *pinctrl;
 	uint32_t prescaler;
 	uint32_t channel; /**< LL_TIM_CHANNEL_CH1.. */
@@ -43,53 +43,105 @@ struct step_dir_config {
 	void (*connect)(void);
 };
 
-/** Owned by whoever keeps the timer's interrupt out. */
+/** Owned by whoever keeps the timer's interrupt out, or has its priority. */
 struct step_dir_data {
 	struct step_train_config train_config;
 	struct step_train train;
+	uint32_t pulse_reload; /**< auto-reload value of a pulse with its space */
 };
+
+static inline void begin(TIM_TypeDef *timer)
+{
+	timer->SR = ~TIM_SR_UIF;
+	LL_TIM_EnableCounter(timer);
+}
+
+/** Begin a pulse with its space, of a timer that stands. */
+static inline void begin_pulse(const struct step_dir_config *config,
+			       const struct step_dir_data *data)
+{
+	TIM_TypeDef *const timer = config->timer;
+	volatile uint32_t *const compare = config->compare;
+
+	timer->ARR = data->pulse_reload;
+	*compare = data->train_config.step_pulse_ticks;
+	timer->EGR = TIM_EGR_UG;
+	*compare = NO_PULSE;
+	begin(timer);
+}
 
 /** Start the next run of the timer, which stands. */
 static void start_run(const struct device *dev)
 {
 	const struct step_dir_config *config = dev->config;
 	struct step_dir_data *data = dev->data;
-	struct step_run run;
+	struct step_run next;
 
-	if (!step_train_next(&data->train, &data->train_config, &run)) {
+	if (!step_train_next(&data->train, &data->train_config, &next)) {
 		LL_TIM_DisableIT_UPDATE(config->timer);
 		return;
 	}
-	if (run.set_direction != 0) {
-		(void)gpio_pin_set_dt(&config->pins.dir, run.set_direction > 0);
+	if (next.set_direction != 0) {
+		(void)gpio_pin_set_dt(&config->pins.dir, next.set_direction > 0);
 	}
-	*config->compare = run.pulse_ticks > 0 ? run.delay_ticks : NO_PULSE;
-	LL_TIM_SetAutoReload(config->timer, run.delay_ticks + run.pulse_ticks - 1);
-	LL_TIM_ClearFlag_UPDATE(config->timer);
-	/* The end of the run matters to steps that wait for it. */
-	if (data->train.waiting != 0) {
+	/* The end of the run matters to what waits for it. */
+	if (step_train_goes_on(&data->train)) {
 		LL_TIM_EnableIT_UPDATE(config->timer);
 	} else {
 		LL_TIM_DisableIT_UPDATE(config->timer);
 	}
-	LL_TIM_EnableCounter(config->timer);
+	if (next.pulse_ticks > 0) {
+		begin_pulse(config, data);
+	} else {
+		config->timer->ARR = next.rest_ticks - 1;
+		begin(config->timer);
+	}
 }
 
-static void step_dir_step(const struct device *dev, int direction)
+/** Let what has been asked for begin, or follow the run that is under way. */
+static void go_on(const struct device *dev)
 {
 	const struct step_dir_config *config = dev->config;
-	struct step_dir_data *data = dev->data;
-	/* The interrupt that steps may be of a lower priority than the timer's. */
-	const unsigned int key = irq_lock();
 
-	step_train_add(&data->train, direction);
 	if (LL_TIM_IsEnabledCounter(config->timer)) {
 		/* If the run ends just now its flag is set, and this interrupts at once. */
 		LL_TIM_EnableIT_UPDATE(config->timer);
 	} else {
 		start_run(dev);
 	}
+}
+
+static void step_dir_step(const struct device *dev, int steps)
+{
+	const struct step_dir_config *config = dev->config;
+	struct step_dir_data *data = dev->data;
+
+	if (!LL_TIM_IsEnabledCounter(config->timer) && step_train_is_next(&data->train, steps)) {
+		/* As nearly always, and what start_run() would come to. */
+		begin_pulse(config, data);
+	} else {
+		step_train_add(&data->train, steps);
+		go_on(dev);
+	}
+}
+
+static void step_dir_prepare(const struct device *dev, int direction)
+{
+	struct step_dir_data *data = dev->data;
+
+	data->train.prepared = (int8_t)direction;
+	go_on(dev);
+}
+
+static bool step_dir_take_lost(const struct device *dev)
+{
+	struct step_dir_data *data = dev->data;
+	const unsigned int key = irq_lock();
+	const bool lost = data->train.lost;
+
+	data->train.lost = false;
 	irq_unlock(key);
+	return lost;
 }
 
 static void on_end_of_run(const struct device *dev)
@@ -113,32 +165,18 @@ static int step_dir_alarm(const struct device *dev)
 	return step_dir_pins_alarm(&((const struct step_dir_config *)dev->config)->pins);
 }
 
-/** Timers run at twice their bus's clock where that is divided (RM0390, 6.2, with TIMPRE off). */
-static int timer_clock_hz(const struct stm32_pclken *clock, uint32_t *hz)
-{
-	const uint32_t divider =
-		clock->bus == STM32_CLOCK_BUS_APB1 ? STM32_APB1_PRESCALER : STM32_APB2_PRESCALER;
-	const int ret = clock_control_get_rate(DEVICE_DT_GET(STM32_CLOCK_CONTROL_NODE),
-					       (clock_control_subsys_t)clock, hz);
-
-	if (ret == 0 && divider > 1) {
-		*hz *= 2;
-	}
-	return ret;
-}
-
 static void configure_timer(const struct step_dir_config *config)
 {
 	TIM_TypeDef *timer = config->timer;
 
 	LL_TIM_SetPrescaler(timer, config->prescaler);
 	LL_TIM_SetUpdateSource(timer, LL_TIM_UPDATESOURCE_COUNTER);
-	LL_TIM_GenerateEvent_UPDATE(timer); /* the prescaler counts from here on */
 	LL_TIM_SetOnePulseMode(timer, LL_TIM_ONEPULSEMODE_SINGLE);
 	LL_TIM_DisableARRPreload(timer);
-	*config->compare = NO_PULSE; /* before the output: 0 would be a pulse without an end */
-	LL_TIM_OC_DisablePreload(timer, config->channel);
-	LL_TIM_OC_SetMode(timer, config->channel, LL_TIM_OCMODE_PWM2);
+	*config->compare = NO_PULSE;
+	LL_TIM_OC_EnablePreload(timer, config->channel);
+	LL_TIM_OC_SetMode(timer, config->channel, LL_TIM_OCMODE_PWM1);
+	LL_TIM_GenerateEvent_UPDATE(timer); /* prescaler and compare value are in force */
 	LL_TIM_OC_SetPolarity(timer, config->channel,
 			      config->step_inverted ? LL_TIM_OCPOLARITY_LOW
 						    : LL_TIM_OCPOLARITY_HIGH);
@@ -156,11 +194,7 @@ static int step_dir_init(const struct device *dev)
 	int ret = step_dir_pins_configure(&config->pins);
 
 	if (ret == 0) {
-		ret = clock_control_on(DEVICE_DT_GET(STM32_CLOCK_CONTROL_NODE),
-				       (clock_control_subsys_t)&config->clock);
-	}
-	if (ret == 0) {
-		ret = timer_clock_hz(&config->clock, &hz);
+		ret = lw_stm32_timer_on(&config->source, &hz);
 	}
 	if (ret == 0) {
 		ret = step_train_configure(&data->train_config, hz / (config->prescaler + 1),
@@ -171,12 +205,11 @@ static int step_dir_init(const struct device *dev)
 				TICKS_MAX);
 		}
 	}
-	if (ret == 0) {
-		ret = reset_line_toggle_dt(&config->reset);
-	}
 	if (ret) {
 		return ret;
 	}
+	data->pulse_reload =
+		data->train_config.step_pulse_ticks + data->train_config.step_space_ticks - 1;
 	configure_timer(config);
 	config->connect();
 	return pinctrl_apply_state(config->pinctrl, PINCTRL_STATE_DEFAULT);
@@ -184,6 +217,8 @@ static int step_dir_init(const struct device *dev)
 
 static const struct lw_step_dir_api step_dir_api = {
 	.step = step_dir_step,
+	.prepare = step_dir_prepare,
+	.take_lost = step_dir_take_lost,
 	.enable = step_dir_enable,
 	.alarm = step_dir_alarm,
 };
@@ -202,9 +237,7 @@ static const struct lw_step_dir_api step_dir_api = {
 	}                                                                                          \
 	static const struct step_dir_config step_dir_config_##inst = {                             \
 		.timer = (TIM_TypeDef *)DT_REG_ADDR(TIMER(inst)),                                  \
-		.clock = {.bus = DT_CLOCKS_CELL(TIMER(inst), bus),                                 \
-			  .enr = DT_CLOCKS_CELL(TIMER(inst), bits)},                               \
-		.reset = RESET_DT_SPEC_GET(TIMER(inst)),                                           \
+		.source = LW_STM32_TIMER(TIMER(inst)),                                             \
 		.pinctrl = PINCTRL_DT_INST_DEV_CONFIG_GET(inst),                                   \
 		.prescaler = DT_PROP(TIMER(inst), st_prescaler),                                   \
 		.channel = CONCAT(LL_TIM_CHANNEL_CH, CHANNEL(inst)),                               \

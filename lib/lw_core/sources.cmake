@@ -1,41 +1,89 @@
 # The one list of the controller's sources, for the host build and the firmware build.
 set(LW_CORE_SOURCES
   generated/map.c
-  src/bank.c
-  src/cam.c
-  src/cam_banks.c
-  src/cam_motion.c
-  src/cam_tracking.c
-  src/cam_table.c
-  src/controller.c
-  src/crc16.c
-  src/device.c
-  src/device_bank.c
-  src/device_cam.c
-  src/device_events.c
-  src/device_line.c
-  src/device_status.c
-  src/encoder_index.c
-  src/homing.c
-  src/law.c
-  src/limit_switch.c
-  src/lock.c
-  src/log.c
-  src/motion.c
-  src/move.c
-  src/param_record.c
-  src/params.c
-  src/pdu.c
-  src/pdu_data.c
-  src/pdu_diagnostics.c
-  src/pdu_files.c
-  src/pdu_identity.c
-  src/quadrature.c
-  src/record.c
-  src/rtu.c
-  src/slave.c
-  src/store.c
-  src/tracking.c
+  src/bytes/crc32.c
+  src/bytes/numbers.c
+  src/bytes/sha256.c
+  src/cam/cam.c
+  src/cam/cam_banks.c
+  src/cam/cam_motion.c
+  src/cam/cam_table.c
+  src/control/cam_check.c
+  src/control/cam_tracking.c
+  src/control/carriage.c
+  src/control/controller.c
+  src/control/drum_speed.c
+  src/control/drum_watch.c
+  src/control/homing.c
+  src/control/jogging.c
+  src/control/limit_switch.c
+  src/control/los.c
+  src/control/modes.c
+  src/control/moving.c
+  src/control/params.c
+  src/control/params_check.c
+  src/control/params_units.c
+  src/control/hand_trim.c
+  src/control/reacquire.c
+  src/control/resume.c
+  src/control/rope_length.c
+  src/control/rope_watch.c
+  src/control/switch_check.c
+  src/control/tracking.c
+  src/device/bank_sections.c
+  src/device/cam_commands.c
+  src/device/commands.c
+  src/device/device.c
+  src/device/journal.c
+  src/device/kept.c
+  src/device/line_trial.c
+  src/device/lock.c
+  src/device/look.c
+  src/device/set_copy.c
+  src/device/status.c
+  src/modbus/bank.c
+  src/modbus/crc16.c
+  src/modbus/pdu.c
+  src/modbus/pdu_checks.c
+  src/modbus/pdu_data.c
+  src/modbus/pdu_diagnostics.c
+  src/modbus/pdu_files.c
+  src/modbus/pdu_identity.c
+  src/modbus/rtu.c
+  src/modbus/slave.c
+  src/motion/encoder_index.c
+  src/motion/law.c
+  src/motion/motion.c
+  src/motion/move.c
+  src/motion/quadrature.c
+  src/storage/log.c
+  src/storage/look_record.c
+  src/storage/param_record.c
+  src/storage/record.c
+  src/storage/store.c
+)
+# Of these, what only a power-up, a command, a write to the storage or a change of the rope's layer runs: the firmware
+# makes them small instead of fast.
+set(LW_CORE_SOURCES_SELDOM_RUN
+  src/bytes/sha256.c
+  src/cam/cam_table.c
+  src/control/cam_check.c
+  src/control/params.c
+  src/control/params_check.c
+  src/control/resume.c
+  src/control/rope_length.c
+  src/device/cam_commands.c
+  src/device/commands.c
+  src/device/line_trial.c
+  src/modbus/pdu_diagnostics.c
+  src/modbus/pdu_files.c
+  src/modbus/pdu_identity.c
+  src/storage/log.c
+  src/storage/look_record.c
+  src/storage/param_record.c
+  src/storage/record.c
+  src/storage/store.c
 )
 list(TRANSFORM LW_CORE_SOURCES PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
+list(TRANSFORM LW_CORE_SOURCES_SELDOM_RUN PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
 set(LW_CORE_INCLUDE_DIRS ${CMAKE_CURRENT_LIST_DIR}/include ${CMAKE_CURRENT_LIST_DIR}/generated)

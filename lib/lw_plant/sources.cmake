@@ -3,8 +3,10 @@ set(LW_PLANT_SOURCES
   src/plant.c
   src/plant_bench.c
   src/plant_carriage.c
+  src/plant_contacts.c
   src/plant_drum.c
   src/plant_fault.c
+  src/plant_random.c
   src/plant_switch.c
 )
 list(TRANSFORM LW_PLANT_SOURCES PREPEND ${CMAKE_CURRENT_LIST_DIR}/)

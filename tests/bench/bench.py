@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measure, against the budgets: `./dev bench [--json FILE] [--record]`.
 
 Exit status 1 if one is not met, or if an edge has become dearer than recorded.
@@ -18,19 +19,26 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent.parent))
 sys.path.insert(0, str(Path(__file__).parent.parent / "integration"))
 
+import board_bench
 import edge_cost
+import readme_numbers
+from budgets import FASTER_THAN_REAL_TIME_MIN, LAY_SEARCH_MAX_S
 from latency import ANSWER_MAX_MS, BAUD, REGISTERS, of_target
-from levelwind.device import Device, Line
+from levelwind.core.native import SIMULATOR, find
+from levelwind.lay import search
+from levelwind.lay.rope import LAUNCH_M, turns_of
+from levelwind.line.device import Device
+from levelwind.line.port import Line
 from levelwind.map_table import POINTS, Command
-from levelwind.native import SIMULATOR, find
 from slave import NATIVE_SIM
 from world import MILLIRPM_PER_EDGE_PER_S, World
 
 TOP_EDGES_PER_S = 48_000  # 40 m/s of rope
-FASTER_THAN_REAL_TIME_MIN = 100
 POLLED_S = 10.0
 BEHIND_MAX_MS = 200  # from there on lw_sim gives lost time up
 LATENCY_READS = 2000
+LAY_PATTERNS = 2000
+LAY_ROPE_UM = 5000
 LAW_CASES = ("sweep", "reversal", "direction_change", "cam_linear", "cam_trapezoid")
 
 
@@ -45,6 +53,7 @@ class Result:
     avg: float
     max: float
     unit: str
+    before: float | None = None  # what it was, where that is known
 
 
 def result(name: str, target: str, options: str, values: list[float], unit: str) -> Result:
@@ -142,6 +151,28 @@ def answers(target: str) -> list[Result]:
     ]
 
 
+def lay_search() -> list[Result]:
+    """`levelwind lay`: so many settings of the factory machine, each laid and judged."""
+    parameters = {p.name: p.default or 0 for p in POINTS.values() if p.block == "parameters"}
+    pitch_um, dwell_millirev = (10_800, 13_200), (0, 300)
+    band = search.Band(pitch_um, dwell_millirev, LAY_PATTERNS)
+    tried = 0
+
+    def count(_done: int, total: int) -> None:
+        nonlocal tried
+        tried = total
+
+    began = time.perf_counter()
+    search.recommend(parameters, band, LAY_ROPE_UM, turns_of(parameters, LAUNCH_M), count)
+    took_s = time.perf_counter() - began
+    assert tried >= LAY_PATTERNS * 0.95, f"only {tried} tried"
+    options = (
+        f"{tried} patterns, {LAUNCH_M:g} m of {LAY_ROPE_UM / 1000:g} mm, "
+        f"{len(os.sched_getaffinity(0))} processors"
+    )
+    return [result("lay search, 2000 patterns", "levelwind lay", options, [took_s], "s")]
+
+
 def wait_for_rest(device: Device) -> None:
     """Until the controller sees the drum at rest."""
     while not device.value("drum_at_rest"):
@@ -196,19 +227,29 @@ def main() -> int:
     targets = ["sim", "native_sim"] if NATIVE_SIM.exists() else ["sim"]
     if len(targets) < 2:
         print(f"bench: native_sim left out, {NATIVE_SIM} is not built", file=sys.stderr)
+    board = board_bench.measure()
     results = [
         *unpaced(),
         *polled(),
         *(r for target in targets for r in answers(target)),
         *(law(case) for case in LAW_CASES),
+        *lay_search(),
+        *(
+            Result(r.name, "nucleo_f446re", r.options, r.min, r.avg, r.max, r.unit, r.before)
+            for r in board
+        ),
     ]
     width = max(len(r.name) for r in results)
     print(f"{'':{width}}  {'min':>9} {'avg':>9} {'max':>9}")
     for r in results:
         figures = " ".join(f"{value:9.2f}" for value in (r.min, r.avg, r.max))
-        print(f"{r.name:{width}}  {figures}  {r.unit:12}  {r.target}: {r.options}")
+        before = "" if r.before is None else f"; {r.before:g} before"
+        print(f"{r.name:{width}}  {figures}  {r.unit:12}  {r.target}: {r.options}{before}")
+    document = json.dumps([asdict(r) for r in results], indent=2) + "\n"
     if arguments.json:
-        arguments.json.write_text(json.dumps([asdict(r) for r in results], indent=2) + "\n")
+        arguments.json.write_text(document)
+    if arguments.record:
+        readme_numbers.FIGURES.write_text(document)
 
     by_name = {r.name: r for r in results}
     failures = []
@@ -221,7 +262,12 @@ def main() -> int:
     for late in (r for r in results if r.name == "answer, the slave's time"):
         if late.max > ANSWER_MAX_MS:
             failures.append(f"{late.target} has answered after more than {ANSWER_MAX_MS:g} ms")
+    if by_name["lay search, 2000 patterns"].max > LAY_SEARCH_MAX_S:
+        failures.append(f"a search of 2,000 patterns took more than {LAY_SEARCH_MAX_S} s")
+    failures += board_bench.failures(board)
     failures += arm(arguments.record)
+    if arguments.record:
+        readme_numbers.write()
     for failure in failures:
         print(f"bench: {failure}", file=sys.stderr)
     return 1 if failures else 0

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * What edge_cost.py counts the instructions of: the law alone, and whole encoder interrupts around
  * the core's real path, as they would be on an STM32F446. Its registers are plain memory here.
@@ -5,7 +6,8 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "lw/controller.h"
+#include "lw/control/cam_check.h"
+#include "lw/control/controller.h"
 
 /* Where these registers are is said by symbols that the linker is given (edge_cost.py). */
 
@@ -64,8 +66,8 @@ int setup(int32_t m, int32_t u)
 		return 0;
 	}
 	lw_controller_init(&controller, &params, &derived, &inputs, 0);
-	lw_motion_place(&controller.motion, controller.motion.window, m,
-			u > 0 ? derived.ks : -derived.ks);
+	lw_motion_set_position(&controller.motion, controller.motion.window, m,
+			       u > 0 ? derived.ks : -derived.ks);
 	lw_motion_set_source(&controller.motion, LW_EDGE_SOURCE_ENCODER);
 	/* What the first edge after a change does. */
 	controller.motion.law.open_span = controller.motion.law.span;

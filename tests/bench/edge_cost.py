@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Instructions per encoder edge on Arm Cortex-M, counted in an emulator (Unicorn, QEMU's CPUs).
 
 edge.c is compiled with the core, bare, and its interrupts are called edge by edge over a seeded mix
@@ -16,7 +17,7 @@ from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from pathlib import Path
 
-from levelwind.cam import Scale, Table
+from levelwind.cam.table import Scale, Table
 from levelwind.map_table import CamInterpolation
 from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
 from unicorn import arm_const as arm
@@ -41,12 +42,15 @@ LAW, HARDWARE, SOFTWARE = "law alone", "interrupt, timer decodes", "interrupt, x
 # What a Cortex-M4 may take, and what the best code written by hand takes: average, worst. The hand
 # floors have no step counter, no direction of the carriage and no mark of a reversal to keep.
 TARGETS = {LAW: (12.0, 20), HARDWARE: (24.0, 36), SOFTWARE: (36.0, 48)}
+# An edge that turns back leaves the decoder's short way, to be counted for the drum watch.
+TURN_WORST = 100
 HAND_FLOORS = {LAW: (8.2, 13), HARDWARE: (18.6, 32)}
 DEARER_MAX = 1.10  # than the record
 EDGES = 40_000
 
 FACTORY = Pattern(23, 1187, 8000, -8000)
-CLASSES = ("sweep", "reversal", "direction change")
+TURN = "direction change"
+CLASSES = ("sweep", "reversal", TURN)
 
 # Registers and memory of edge.c.
 FLASH, RAM, STOP = 0x08000000, 0x20000000, 0x10000000
@@ -110,7 +114,7 @@ def build(folder: Path, cpu: str, optimization: str) -> Path:
             *(f"-Wl,--defsym={name}={address}" for name, address in symbols.items()),
             *(f"-Wl,-Ttext={FLASH:#x}", f"-Wl,-Tdata={RAM:#x}"),
             *(f"-I{core}/include", f"-I{core}/generated", f"{core}/generated/map.c"),
-            *sorted(map(str, core.glob("src/*.c"))),
+            *sorted(map(str, core.glob("src/*/*.c"))),
             *(str(ROOT / "tests/bench/edge.c"), "-o", str(program)),
         ],
         check=True,
@@ -211,7 +215,7 @@ def classes(runs: list[int], model: Model) -> list[str]:
             pos, after = next(positions)
             at = pos if dd > 0 else after
             if i == 0 and dd != before:
-                result.append("direction change")
+                result.append(TURN)
             elif model.pattern.minus < at < model.pattern.plus:
                 result.append("sweep")
             else:
@@ -367,7 +371,11 @@ def failures(costs: list[Cost], record: list[Cost]) -> list[str]:
     for c in costs:
         name = f"{c.function}, {c.cpu} {c.optimization}, {c.edges}"
         avg_max, worst_max = TARGETS.get(c.function, (float("inf"), float("inf")))
-        if c.cpu == "cortex-m4" and c.edges == "all" and (c.avg > avg_max or c.max > worst_max):
+        if c.function == SOFTWARE and c.edges in ("all", TURN):
+            worst_max = TURN_WORST
+        if c.edges != "all":
+            avg_max = float("inf")  # it is for the mix
+        if c.cpu == "cortex-m4" and (c.avg > avg_max or c.max > worst_max):
             result.append(f"{name}: {c.avg} / {c.max}, the target is {avg_max} / {worst_max}")
         old = before.get(key(c))
         if old is not None and (c.avg > DEARER_MAX * old.avg or c.max > DEARER_MAX * old.max):

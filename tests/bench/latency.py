@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How long a slave takes to answer, at the fastest drum."""
 
 import os
@@ -6,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from levelwind.conformance.line import SerialLine, sealed
-from levelwind.device import Line
+from levelwind.line.port import Line
 from levelwind.map_table import Command, Flag, Result, State
 from slave import Slave, start
 

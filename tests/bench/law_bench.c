@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * One kind of edge, over and over, for an instruction count: callgrind counts inside of
  * encoder_interrupt() and nowhere else (bench.py).
@@ -6,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "lw/controller.h"
+#include "lw/control/cam_check.h"
+#include "lw/control/controller.h"
 
 #define EDGES 1000
 
@@ -81,8 +83,8 @@ int main(int argc, char **argv)
 	const bool reversal = strcmp(argv[1], "reversal") == 0;
 	const bool direction_change = strcmp(argv[1], "direction_change") == 0;
 
-	lw_motion_place(&controller.motion, controller.motion.window,
-			reversal ? controller.motion.window->sweep_end : 0, derived.ks);
+	lw_motion_set_position(&controller.motion, controller.motion.window,
+			       reversal ? controller.motion.window->sweep_end : 0, derived.ks);
 	lw_motion_set_source(&controller.motion, LW_EDGE_SOURCE_ENCODER);
 	if (strncmp(argv[1], "cam_", 4) == 0 &&
 	    follow_cam(&controller, &params,

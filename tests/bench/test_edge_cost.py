@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An edge costs what it may, and every step is the model's."""
 
 import pytest

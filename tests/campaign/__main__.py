@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fault campaign: `./dev campaign`. Exit status 1 if an invariant was broken."""
 
 import argparse
@@ -6,13 +7,18 @@ import os
 import shlex
 import sys
 import time
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
-from .launch import play
+from levelwind.map_table import Flag
+
+from .launch import Invariant, memory_bits, memory_part, play, play_apart
 from .report import OUTCOMES, Launch, by_fault, by_invariant, draw, write
-from .scenario import scenario
+from .scenario import flip_scenario, scenario
 
+FLIP_OUTCOMES = ("harmless", "told", "restart", "moved", "silent")
 REPORT = Path("out/campaign.html")
 
 
@@ -26,6 +32,46 @@ def campaign(seeds: range) -> Iterator[Launch]:
     """Play all, on all cores, as they are done."""
     with multiprocessing.Pool(os.cpu_count()) as pool:
         yield from pool.imap_unordered(play_seed, seeds, chunksize=8)
+
+
+class Flip(NamedTuple):
+    """A launch in which a bit of the controller's memory was flipped."""
+
+    seed: int
+    part: str
+    outcome: str
+    summary: str
+
+
+def play_flip(seed: int, library: Path | None = None, bit: int | None = None) -> Flip:
+    """Play the flip of a seed, of a bit by chance or of this one."""
+    s, bit = flip_scenario(seed, memory_bits(library), bit)
+    ending, verdict = play_apart(s, library)
+    part = memory_part(bit, library)
+    if verdict is None:
+        return Flip(seed, part, "restart", f"flip {seed}: bit {bit} of {part}: {ending.name}")
+    launch = Launch(seed, [f"bit {bit} of {part}"], verdict)
+    if verdict.broken is not None:
+        outcome = "silent" if verdict.broken == Invariant.SILENT else "moved"
+    elif launch.outcome == "no alarm" and verdict.flags >> Flag.LAUNCH_PERMIT & 1:
+        outcome = "harmless"
+    else:
+        outcome = "told"
+    return Flip(seed, part, outcome, launch.summary())
+
+
+def flips(seeds: range) -> int:
+    """Flip bits, and tell by part of the memory what came of it."""
+    with multiprocessing.Pool(os.cpu_count()) as pool:
+        played = sorted(pool.imap_unordered(play_flip, seeds, chunksize=8))
+    bad = [flip for flip in played if flip.outcome in ("silent", "moved")]
+    print("\n".join(flip.summary for flip in bad))
+    print(f"{'memory':26} {'bits':>6}" + "".join(f"{o:>10}" for o in FLIP_OUTCOMES))
+    parts = Counter(flip.part for flip in played)
+    for part, count in [*parts.most_common(), ("all", len(played))]:
+        of_part = Counter(flip.outcome for flip in played if part in ("all", flip.part))
+        print(f"{part:26} {count:6}" + "".join(f"{of_part[o]:10}" for o in FLIP_OUTCOMES))
+    return bool(bad)
 
 
 def replay(seed: int) -> int:
@@ -49,7 +95,12 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1, metavar="S", help="the first one's seed")
     parser.add_argument("--replay", type=int, metavar="SEED", help="only this one, with a picture")
     parser.add_argument("--report", type=Path, default=REPORT, metavar="FILE", help="HTML")
+    parser.add_argument(
+        "--flips", type=int, metavar="N", help="instead: flip N bits of the controller's memory"
+    )
     arguments = parser.parse_args()
+    if arguments.flips is not None:
+        return flips(range(arguments.seed, arguments.seed + arguments.flips))
     if arguments.replay is not None:
         return replay(arguments.replay)
 
@@ -71,6 +122,14 @@ def main() -> int:
     for name, statement, count in by_invariant(launches):
         print(f"{'FAILED' if count else 'ok':7} {name:12} {statement}")
         broken += count
+    slow = max(launches, key=lambda x: x.verdict.slow_turns)
+    print(
+        f"most rope laid wrong and not told, on a drum too slow for its watch: "
+        f"{slow.verdict.slow_turns:.2f} drum turns, launch {slow.seed}"
+    )
+    edges = sum(x.verdict.pin_edges for x in launches)
+    hours = sum(x.verdict.duration_ms for x in launches) / 3.6e6
+    print(f"{hours:.1f} h of winch time, {edges / 1e6:.0f} million edges")
     print(f"{arguments.report}: {len(launches)} launches in {time.monotonic() - began:.0f} s")
     return 1 if broken else 0
 

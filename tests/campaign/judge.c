@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "judge.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "lw/law.h"
+#include "lw/motion/law.h"
 
 /** Microsteps per micrometre of the plant's defaults, which the scenarios keep. */
 #define USTEPS_PER_UM 0.1
@@ -14,14 +15,37 @@
 /** Fastest carriage: 60,000 edges/s, where overspeed stops it, times the factory slope. */
 #define CARRIAGE_MAX_USTEPS_PER_S 25000.0
 
+/** The drum watch sees a dead channel from this speed on, and a loose wire, that is dead half of
+ * the time and at random. Transitions of the drum: two of each channel's; a tenth more, to be fair.
+ */
+#define DEAD_PER_MS  4.4
+#define LOOSE_PER_MS 13.0
+
+/** What is lost within so many revolutions of the encoder after power-up, nobody can know. */
+#define SILENT_REVOLUTIONS 2
+
+/** Later than its threshold by so many drum turns, rope laid standing is not told. */
+#define STANDING_MARGIN_TURNS 0.05
+
+/** Withheld steps end in a fault at the next tick. */
+#define BLOCKED_NS 2000000u
+
+/** So long a switch may tell what cannot be, before it must cost the permit. */
+#define IMPOSSIBLE_MS 300
+
+/** How long a carriage may stand beside a turning drum. */
+#define STOOD_MS 600
+
 /** A rotor in step is less than a quarter of its electrical period off. */
 #define ROTOR_USTEPS 10.0
 
 static void broken(struct lw_judge *judge, enum lw_invariant invariant, double found, double limit)
 {
 	struct lw_verdict *verdict = &judge->verdict;
+	const bool counts = !judge->upset || invariant == LW_INVARIANT_OVERTRAVEL ||
+			    invariant == LW_INVARIANT_SILENT || invariant == LW_INVARIANT_UNASKED;
 
-	if (verdict->broken < 0) {
+	if (verdict->broken < 0 && counts) {
 		verdict->broken = (int32_t)invariant;
 		verdict->broken_ms = (uint32_t)(judge->world->now_ns / 1000000u);
 		verdict->found = found;
@@ -72,6 +96,8 @@ static void anchor(struct lw_judge *judge, const struct lw_status *status)
 		.u = status->u,
 	};
 	judge->following = true;
+	judge->lay = judge->screw;
+	judge->laying = true;
 	judge->recoveries = status->los_recoveries;
 }
 
@@ -187,7 +213,10 @@ static void check_step(struct lw_judge *judge, enum lw_edge_source source, int s
 	    world->now_ns - judge->overtravel_ns[side] >= late_ns) {
 		broken(judge, LW_INVARIANT_OVERTRAVEL, 1, 0);
 	}
-	if (judge->step == step && judge->step_source == source && judge->screw.ks > 0) {
+	/* Beside an overtravel switch that is actuated, or was in this tick, an edge that rocks
+	 * steps away from it only. */
+	if (judge->step == step && judge->step_source == source && judge->screw.ks > 0 &&
+	    (judge->blocked_ns == 0 || world->now_ns - judge->blocked_ns > BLOCKED_NS)) {
 		/* A whole microstep lies between two steps the same way. */
 		const int64_t between = llabs(judge->source_edges[source] - judge->step_edges);
 		const int64_t least = LW_USTEP / judge->screw.ks;
@@ -208,6 +237,8 @@ void lw_judge_edge(struct lw_judge *judge, enum lw_edge_source source, int step)
 	for (int side = 0; side < 2; side++) {
 		if (!judge->world->plant.pins.overtravel[side]) {
 			judge->overtravel_ns[side] = judge->world->now_ns;
+		} else {
+			judge->blocked_ns = judge->world->now_ns;
 		}
 	}
 	judge->source_edges[source] += edge;
@@ -236,7 +267,7 @@ static bool resting(int32_t state)
 
 static bool flag(const struct lw_status *status, enum lw_flag bit)
 {
-	return status->flags >> bit & 1u;
+	return ((uint64_t)status->flags_2 << 32 | status->flags) >> bit & 1u;
 }
 
 static void check_odometer(struct lw_judge *judge, const struct lw_status *status)
@@ -246,6 +277,8 @@ static void check_odometer(struct lw_judge *judge, const struct lw_status *statu
 		judge->edges_per_pulse = judge->world->device.active.encoder_edges_per_pulse;
 		judge->edges_base = judge->edges - status->net_edges;
 		judge->true_base = true_edges(judge) - status->net_edges;
+		judge->lay_edges = true_edges(judge);
+		judge->standing_edges = 0;
 		if (status->uptime_ms < judge->uptime_ms && status->net_edges != 0) {
 			broken(judge, LW_INVARIANT_ODOMETER, (double)status->net_edges, 0);
 		}
@@ -259,10 +292,17 @@ static void check_odometer(struct lw_judge *judge, const struct lw_status *statu
 	if (status->net_edges != counted) {
 		broken(judge, LW_INVARIANT_ODOMETER, (double)(status->net_edges - counted), 0);
 	}
-	if (hidden > may) {
+	if (hidden > may && !judge->channels_hide) {
 		broken(judge, LW_INVARIANT_ODOMETER, (double)hidden, (double)may);
 	}
-	if (hidden > judge->verdict.hidden_edges) {
+	/* The first index pulse has nothing to be compared with, and the second one only it. */
+	if (hidden > judge->edges_per_pulse + 1 && !judge->channels_hide &&
+	    llabs(true_edges(judge) - judge->true_base) <
+		    (int64_t)SILENT_REVOLUTIONS * judge->edges_per_pulse *
+			    judge->world->device.active.encoder_pulses_per_rev) {
+		judge->unknowable = true;
+	}
+	if (hidden > judge->verdict.hidden_edges && !judge->channels_hide) {
 		judge->verdict.hidden_edges = hidden;
 	}
 }
@@ -292,6 +332,48 @@ static void check_place(struct lw_judge *judge, const struct lw_status *status,
 	}
 }
 
+/** Does a limit switch read actuated, by the contacts that are wired? */
+static bool reads_actuated(const struct lw_judge *judge, int side)
+{
+	const struct lw_plant_pins *pins = &judge->world->plant.pins;
+
+	switch (judge->world->device.active.switch_contacts) {
+	case LW_SWITCH_CONTACTS_SINGLE_NO:
+		return pins->limit[side].no_closed;
+	case LW_SWITCH_CONTACTS_SINGLE_NC:
+		return !pins->limit[side].nc_closed;
+	default:
+		return pins->limit[side].no_closed && !pins->limit[side].nc_closed;
+	}
+}
+
+/** No permit while a switch tells what the place of the carriage makes impossible. */
+static void check_switches(struct lw_judge *judge, const struct lw_status *status,
+			   const struct lw_plant_truth *truth)
+{
+	const struct lw_params *active = &judge->world->device.active;
+	const double margin =
+		USTEPS_PER_UM * (active->switch_tolerance_um + active->switch_hysteresis_um) +
+		2 * tolerance_usteps(judge);
+	const double told = (double)status->m / LW_USTEP;
+
+	for (int side = 0; side < 2; side++) {
+		const int out = side == LW_PLUS ? 1 : -1;
+		const double at = USTEPS_PER_UM * (side == LW_PLUS ? active->switch_plus_um
+								   : active->switch_minus_um);
+		const bool inward =
+			out * (at - told) > margin && out * (at - truth->carriage_usteps) > margin;
+
+		if (!flag(status, LW_FLAG_LAUNCH_PERMIT) || !inward ||
+		    !reads_actuated(judge, side)) {
+			judge->impossible_ms[side] = 0;
+		} else if (++judge->impossible_ms[side] > IMPOSSIBLE_MS) {
+			broken(judge, LW_INVARIANT_PERMIT, judge->impossible_ms[side],
+			       IMPOSSIBLE_MS);
+		}
+	}
+}
+
 static void check_permit(struct lw_judge *judge, const struct lw_status *status,
 			 const struct lw_plant_truth *truth)
 {
@@ -318,6 +400,10 @@ static void check_permit(struct lw_judge *judge, const struct lw_status *status,
 		truth->carriage_usteps >= active->switch_plus_um * USTEPS_PER_UM - near_usteps;
 	judge->visited[LW_MINUS] |=
 		truth->carriage_usteps <= active->switch_minus_um * USTEPS_PER_UM + near_usteps;
+	if (!indexed && (status->state == LW_STATE_READY || status->state == LW_STATE_CENTRED ||
+			 status->state == LW_STATE_TRACKING)) {
+		broken(judge, LW_INVARIANT_PERMIT, status->state, 0);
+	}
 	if (permit && !(indexed && judge->visited[LW_PLUS] && judge->visited[LW_MINUS])) {
 		broken(judge, LW_INVARIANT_PERMIT, 1, 0);
 	}
@@ -330,51 +416,168 @@ static void check_permit(struct lw_judge *judge, const struct lw_status *status,
 	judge->verdict.permit_ms += permit;
 }
 
+/** Let the drum drive its screw, and see how fast it turns. */
+static void turn_lay(struct lw_judge *judge, const struct lw_plant_truth *truth)
+{
+	const int64_t edges = true_edges(judge);
+	const double moved = (double)llabs(truth->drum_transitions - judge->transitions);
+
+	for (; judge->lay_edges < edges; judge->lay_edges++) {
+		turn(&judge->lay, 1);
+	}
+	for (; judge->lay_edges > edges; judge->lay_edges--) {
+		turn(&judge->lay, -1);
+	}
+	judge->transitions = truth->drum_transitions;
+	judge->transitions_per_ms += (moved - judge->transitions_per_ms) / 8.0;
+}
+
+/** Other reversal points: the drum's screw keeps its place, if it is in the sweep. */
+static void move_lay(struct lw_judge *judge)
+{
+	struct lw_judge_screw *lay = &judge->lay;
+	const bool was_in_sweep = region(lay) == 0;
+
+	lay->begin = judge->screw.begin;
+	lay->end = judge->screw.end;
+	judge->laying = judge->laying && was_in_sweep && region(lay) == 0;
+}
+
 static void check_pattern(struct lw_judge *judge, const struct lw_status *status)
 {
 	struct lw_judge_screw *screw = &judge->screw;
 
 	if (status->los_recoveries != judge->recoveries) {
+		judge->laying = judge->upset;
 		judge->following = false; /* the carriage is brought into another phase */
-		if (!flag(status, LW_FLAG_LOS)) {
+		/* It may be the count that was flipped. */
+		if (!flag(status, LW_FLAG_LOS) && !judge->upset) {
 			broken(judge, LW_INVARIANT_SILENT, status->los_recoveries, 0);
 		}
+	} else if (judge->upset) {
+		judge->following = false; /* the reversal points that are told may be wrong */
 	} else if (screw->begin != (int64_t)(status->reversal_minus_usteps + 1) * LW_USTEP ||
 		   screw->end != (int64_t)status->reversal_plus_usteps * LW_USTEP) {
+		const struct lw_judge_screw lay = judge->lay;
+		const bool as_one = lay.m == screw->m && lay.u == screw->u;
+
 		anchor(judge, status); /* a trim has come into force */
+		if (!as_one) {
+			judge->lay = lay;
+			move_lay(judge);
+		}
 	} else if (screw->m != status->m || screw->u != status->u) {
 		broken(judge, LW_INVARIANT_PATTERN, status->m, (double)screw->m);
 		anchor(judge, status);
 	}
 }
 
-/** Is the rope laid where it belongs, and if not, is it told? */
+/** Can the controller see at this speed that a channel does not tell the drum's motion? */
+static bool can_be_watched(const struct lw_judge *judge)
+{
+	const bool loose = judge->channel_fault[0] == LW_PLANT_CHANNEL_FLICKER ||
+			   judge->channel_fault[1] == LW_PLANT_CHANNEL_FLICKER;
+
+	if (!judge->channels_hide || !judge->index_open) {
+		return true; /* index pulses tell at any speed */
+	}
+	return judge->transitions_per_ms >= (loose ? LOOSE_PER_MS : DEAD_PER_MS);
+}
+
+/** Does the carriage stand beside a turning drum, untold? */
+static void check_stood(struct lw_judge *judge, const struct lw_status *status)
+{
+	/* Both channels dead only index pulses can tell, and they take as long as they take. */
+	if (judge->unknowable || flag(status, LW_FLAG_LOS) ||
+	    (judge->channel_fault[0] != 0 && judge->channel_fault[1] != 0) ||
+	    judge->transitions_per_ms < DEAD_PER_MS ||
+	    llabs(judge->edges - judge->stood_pins_edges) > 2) {
+		judge->stood_pins_edges = judge->edges;
+		judge->stood_ms = 0;
+		return;
+	}
+	if (++judge->stood_ms > STOOD_MS) {
+		broken(judge, LW_INVARIANT_SILENT, judge->stood_ms, STOOD_MS);
+	}
+}
+
+/** Is the rope laid where the drum wants it, and if not, is it told? */
 static void check_lay(struct lw_judge *judge, const struct lw_status *status,
 		      const struct lw_plant_truth *truth)
 {
-	const int64_t traverse = traverse_edges(&judge->screw) + slack_edges(judge);
+	const int64_t way = traverse_edges(&judge->lay) + slack_edges(judge);
+	/* A law whose position has jumped comes to its next reversal a little later. */
+	const int64_t traverse = judge->upset ? way + way / 50 : way;
 	const double tolerance = tolerance_usteps(judge);
-	const double error =
-		fabs(truth->carriage_usteps - (double)judge->screw.m / (double)LW_USTEP);
+	const double error = fabs(truth->carriage_usteps - (double)judge->lay.m / (double)LW_USTEP);
 
-	if (judge->permit && error > judge->verdict.error_usteps) {
+	if (judge->permit && !judge->unknowable && error > judge->verdict.error_usteps) {
 		judge->verdict.error_usteps = error;
 	}
-	if (error <= tolerance || flag(status, LW_FLAG_LOS)) {
+	if (flag(status, LW_FLAG_LOS) || judge->unknowable || (judge->upset && !judge->permit)) {
 		judge->wrong.begun = false;
 		return;
 	}
-	if (!judge->wrong.begun) {
-		begin_range(&judge->wrong, judge->edges);
+	if (error > tolerance) {
+		judge->right.begun = false;
+	} else if (!judge->wrong.begun) {
+		return;
+	} else if (!judge->right.begun) {
+		begin_range(&judge->right, judge->lay_edges);
+	} else if (widen_range(&judge->right, judge->lay_edges) > traverse / 4) {
+		judge->wrong.begun = false; /* not where a shifted lay only crosses the right one */
+		return;
 	}
+	if (!judge->wrong.begun) {
+		begin_range(&judge->wrong, judge->lay_edges);
+		judge->wrong_edges = judge->lay_edges;
+		judge->wrong_slow_edges = 0;
+	}
+	if (!can_be_watched(judge)) {
+		judge->wrong_slow_edges += llabs(judge->lay_edges - judge->wrong_edges);
+	}
+	judge->wrong_edges = judge->lay_edges;
 
-	const int64_t silent = widen_range(&judge->wrong, judge->edges);
+	const int64_t silent =
+		widen_range(&judge->wrong, judge->lay_edges) - judge->wrong_slow_edges;
 
+	judge->verdict.slow_turns =
+		fmax(judge->verdict.slow_turns,
+		     (double)judge->wrong_slow_edges * 1000.0 / status->edges_per_1000_drum_revs);
 	if (silent > judge->verdict.silent_edges) {
 		judge->verdict.silent_edges = silent;
 	}
-	if (silent > traverse) {
+	/* The limit is a parameter's, which a flipped bit may make anything until it is mended. */
+	if (silent > 0 && silent > traverse) {
 		broken(judge, LW_INVARIANT_SILENT, (double)silent, (double)traverse);
+	}
+}
+
+/**
+ * Rope that is hauled in while the carriage does not follow lies on one heap: a stack of turns, of
+ * which the drum takes off what it pays out.
+ */
+static void check_standing(struct lw_judge *judge, const struct lw_status *status, int64_t turned)
+{
+	const bool meant =
+		status->state == LW_STATE_TRACKING || status->state == LW_STATE_REACQUIRING ||
+		status->active_mode == LW_MODE_OFF ||
+		(status->active_mode == LW_MODE_CENTRE && status->fault == LW_FAULT_NONE);
+	const double turn = status->edges_per_1000_drum_revs / 1000.0;
+	const double limit = turn * (judge->world->device.active.standing_turns_permille / 1000.0 +
+				     STANDING_MARGIN_TURNS);
+
+	/* Each stand counts for itself; an indexing that succeeds ends one. */
+	const bool indexed_now = flag(status, LW_FLAG_INDEXED) && !judge->indexed;
+
+	judge->standing_edges += turned;
+	if (judge->standing_edges < 0 || meant || indexed_now || judge->channels_hide ||
+	    judge->may_hide_edges > (int64_t)(turn * STANDING_MARGIN_TURNS / 2)) {
+		judge->standing_edges = 0;
+	}
+	if ((double)judge->standing_edges > limit && !flag(status, LW_FLAG_ROPE_LAID_STANDING)) {
+		broken(judge, LW_INVARIANT_STANDING, (double)judge->standing_edges / turn,
+		       limit / turn);
 	}
 }
 
@@ -415,7 +618,7 @@ static void check_recovery(struct lw_judge *judge, const struct lw_status *statu
 static void check_alarm(struct lw_judge *judge, const struct lw_status *status,
 			const struct lw_plant_truth *truth)
 {
-	const double error = fabs(truth->carriage_usteps - (double)judge->screw.m / LW_USTEP);
+	const double error = fabs(truth->carriage_usteps - (double)judge->lay.m / LW_USTEP);
 
 	if (!judge->harmless) {
 		return;
@@ -423,24 +626,30 @@ static void check_alarm(struct lw_judge *judge, const struct lw_status *status,
 	if (flag(status, LW_FLAG_LOS) || status->fault != LW_FAULT_NONE) {
 		broken(judge, LW_INVARIANT_FALSE_ALARM, status->fault, 0);
 	}
-	if (judge->following && error > tolerance_usteps(judge)) {
+	if (judge->laying && error > tolerance_usteps(judge)) {
 		broken(judge, LW_INVARIANT_FALSE_ALARM, error, tolerance_usteps(judge));
 	}
 }
 
 void lw_judge_tick(struct lw_judge *judge)
 {
-	const uint32_t los = 1u << LW_FLAG_LOS1_PLUS | 1u << LW_FLAG_LOS1_MINUS |
-			     1u << LW_FLAG_LOS2_PLUS | 1u << LW_FLAG_LOS2_MINUS;
+	const uint32_t los = 1u << LW_FLAG_LOS | 1u << LW_FLAG_LOS1_PLUS |
+			     1u << LW_FLAG_LOS1_MINUS | 1u << LW_FLAG_LOS2_PLUS |
+			     1u << LW_FLAG_LOS2_MINUS;
 	struct lw_verdict *verdict = &judge->verdict;
 	const struct lw_status *status = &judge->world->device.status_image;
 	struct lw_plant_truth truth;
+	int64_t lay_edges;
 
 	lw_device_refresh_status(&judge->world->device);
 	lw_plant_read_truth(&judge->world->plant, &truth);
 	check_odometer(judge, status);
+	lay_edges = judge->lay_edges;
+	turn_lay(judge, &truth);
+	check_standing(judge, status, judge->lay_edges - lay_edges);
 	if (status->state != LW_STATE_TRACKING || status->uptime_ms < judge->uptime_ms) {
 		judge->following = false;
+		judge->laying = false;
 		judge->wrong.begun = false;
 		judge->recovering.begun = false;
 	} else if (judge->state != LW_STATE_TRACKING) {
@@ -459,11 +668,13 @@ void lw_judge_tick(struct lw_judge *judge)
 
 	check_place(judge, status, &truth);
 	check_permit(judge, status, &truth);
+	check_switches(judge, status, &truth);
 	if (judge->following) {
 		check_pattern(judge, status);
 	}
-	if (judge->following) {
+	if (judge->laying) {
 		check_lay(judge, status, &truth);
+		check_stood(judge, status);
 	}
 	if (status->state == LW_STATE_TRACKING) {
 		check_recovery(judge, status, &truth);
@@ -490,6 +701,14 @@ void lw_judge_init(struct lw_judge *judge, struct lw_world *world)
 		.sound = true,
 	};
 	judge->true_base = true_edges(judge);
+	judge->lay_edges = judge->true_base;
+}
+
+void lw_judge_answers(struct lw_judge *judge, uint32_t answers)
+{
+	if (answers != 1) {
+		broken(judge, LW_INVARIANT_LINE, answers, 1);
+	}
 }
 
 void lw_judge_end(struct lw_judge *judge)

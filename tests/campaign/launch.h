@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * One launch of the fault campaign: a machine that has just been switched on, a list of actions
@@ -21,7 +22,10 @@ enum lw_action_kind {
 	LW_ACTION_DRUM,          /**< drum to `a` milli rpm at `b` milli rpm per s */
 	LW_ACTION_INJECT,        /**< plant fault `a` with argument `b` */
 	LW_ACTION_ARM,           /**< plant fault `c` with argument `d` at `a` um, direction `b` */
+	LW_ACTION_ECHO,          /**< the line echoes what is sent (`a` = 1), or not (0) */
+	LW_ACTION_BABBLE,        /**< bytes that never leave a silence, for `a` ms */
 	LW_ACTION_MASTER,        /**< the master polls (`a` = 1), or is silent (0) */
+	LW_ACTION_FLIP,          /**< bit `a` of the controller's memory; the judge is told */
 };
 
 /** One action. */
@@ -55,6 +59,30 @@ struct lw_trace_sample {
 	float ideal_usteps; /**< while `following` */
 	float drum_edges_per_s;
 };
+
+/** How a launch ended that was played apart. */
+enum lw_ending {
+	LW_ENDING_PLAYED,
+	LW_ENDING_CRASHED, /**< a trap: on an MCU the restart by its fault handler */
+	LW_ENDING_HUNG,    /**< on an MCU the restart by its watchdog */
+};
+
+/** Bits of the controller's memory, for LW_ACTION_FLIP. */
+uint32_t lw_campaign_bits(void);
+
+/** The part of the controller that a bit of its memory belongs to, for reports. */
+const char *lw_campaign_part(uint32_t bit);
+
+/**
+ * Play a launch in a process of its own, in which the controller may do what it wants.
+ *
+ * @param limit_s of real time, then it hangs
+ * @return enum lw_ending; of a launch that has not been played `verdict` is not written
+ * @retval -EINVAL as below
+ * @retval -EAGAIN no process or no memory for it
+ */
+int32_t lw_campaign_play_apart(const struct lw_launch *launch, struct lw_verdict *verdict,
+			       uint32_t limit_s);
 
 /**
  * Play a launch.

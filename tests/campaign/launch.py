@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Playing a scenario in the compiled campaign library (launch.h), through ctypes."""
 
 import ctypes
@@ -7,13 +8,14 @@ from enum import IntEnum
 from pathlib import Path
 from typing import NamedTuple
 
-from levelwind import native
+from levelwind.core import layout, native
 
-from .scenario import Scenario
+from .scenario import ActionKind, Scenario
 
 LIBRARY = "liblw_campaign.so"
 TRACE_STRIDE_MS = 5
 TRACE_SIZE = 40_000
+HANG_S = 60  # of real time
 
 
 class Invariant(IntEnum):
@@ -29,6 +31,16 @@ class Invariant(IntEnum):
     ODOMETER = 7
     RECOVERY = 8
     FALSE_ALARM = 9
+    STANDING = 10
+    LINE = 11
+
+
+class Ending(IntEnum):
+    """enum lw_ending."""
+
+    PLAYED = 0
+    CRASHED = 1
+    HUNG = 2
 
 
 class _Action(ctypes.Structure):
@@ -71,6 +83,7 @@ class _Verdict(ctypes.Structure):
         ("pin_edges", ctypes.c_int64),
         ("error_usteps", ctypes.c_double),
         ("silent_edges", ctypes.c_int64),
+        ("slow_turns", ctypes.c_double),
         ("recovered_edges", ctypes.c_int64),
         ("hidden_edges", ctypes.c_int64),
     )
@@ -109,6 +122,7 @@ class Verdict:
     pin_edges: int
     error_usteps: float
     silent_edges: int
+    slow_turns: float
     recovered_edges: int
     hidden_edges: int
 
@@ -129,6 +143,25 @@ class Sample(NamedTuple):
 @functools.cache
 def _library(path: Path) -> ctypes.CDLL:
     library = ctypes.CDLL(str(path))
+    layout.check(
+        library,
+        "lw_layout_campaign",
+        {
+            "struct lw_action": _Action,
+            "struct lw_launch": _Launch,
+            "struct lw_verdict": _Verdict,
+            "struct lw_trace_sample": _Sample,
+            "enum lw_action_kind": ActionKind,
+            "enum lw_invariant": Invariant,
+            "enum lw_ending": Ending,
+        },
+    )
+    library.lw_campaign_part.restype = ctypes.c_char_p
+    library.lw_campaign_play_apart.argtypes = (
+        ctypes.POINTER(_Launch),
+        ctypes.POINTER(_Verdict),
+        ctypes.c_uint32,
+    )
     library.lw_campaign_play.argtypes = (
         ctypes.POINTER(_Launch),
         ctypes.POINTER(_Verdict),
@@ -139,12 +172,9 @@ def _library(path: Path) -> ctypes.CDLL:
     return library
 
 
-def play(
-    scenario: Scenario, traced: bool = False, library: Path | None = None
-) -> tuple[Verdict, list[Sample]]:
-    """Play a launch; its verdict, and a trace if wanted."""
+def _launch(scenario: Scenario) -> _Launch:
     actions = (_Action * len(scenario.actions))(*(_Action(*a) for a in scenario.actions))
-    launch = _Launch(
+    return _Launch(
         scenario.seed,
         scenario.carriage_um,
         scenario.harmless,
@@ -152,6 +182,19 @@ def play(
         len(actions),
         bytes(scenario.requests),
     )
+
+
+def _verdict(out: _Verdict) -> Verdict:
+    values = {name: getattr(out, name) for name, _ in _Verdict._fields_}
+    values["broken"] = None if out.broken < 0 else Invariant(out.broken)
+    return Verdict(**values)
+
+
+def play(
+    scenario: Scenario, traced: bool = False, library: Path | None = None
+) -> tuple[Verdict, list[Sample]]:
+    """Play a launch; its verdict, and a trace if wanted."""
+    launch = _launch(scenario)
     out = _Verdict()
     trace = (_Sample * TRACE_SIZE)() if traced else None
     samples = _library(library or native.find(LIBRARY)).lw_campaign_play(
@@ -159,8 +202,28 @@ def play(
     )
     if samples < 0:
         raise RuntimeError(f"launch {scenario.seed}: errno {-samples}: {scenario.story}")
-    values = {name: getattr(out, name) for name, _ in _Verdict._fields_}
-    values["broken"] = None if out.broken < 0 else Invariant(out.broken)
     names = [name for name, _ in _Sample._fields_]
     rows = trace[:samples] if trace is not None else []
-    return Verdict(**values), [Sample(*(getattr(row, name) for name in names)) for row in rows]
+    return _verdict(out), [Sample(*(getattr(row, name) for name in names)) for row in rows]
+
+
+def memory_bits(library: Path | None = None) -> int:
+    """Bits of the controller's memory."""
+    return _library(library or native.find(LIBRARY)).lw_campaign_bits()
+
+
+def memory_part(bit: int, library: Path | None = None) -> str:
+    """What a bit of the controller's memory belongs to."""
+    return _library(library or native.find(LIBRARY)).lw_campaign_part(bit).decode()
+
+
+def play_apart(scenario: Scenario, library: Path | None = None) -> tuple[Ending, Verdict | None]:
+    """Play a launch in a process of its own: how it ended, and its verdict if it was played."""
+    launch = _launch(scenario)
+    out = _Verdict()
+    ending = _library(library or native.find(LIBRARY)).lw_campaign_play_apart(
+        ctypes.byref(launch), ctypes.byref(out), HANG_S
+    )
+    if ending < 0:
+        raise RuntimeError(f"launch {scenario.seed}: errno {-ending}: {scenario.story}")
+    return Ending(ending), _verdict(out) if ending == Ending.PLAYED else None

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The campaign's report: one HTML file with everything in it."""
 
 import base64
@@ -7,16 +8,16 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from levelwind.line.points import enum_label
 from levelwind.map_table import Fault, Flag, State
-from levelwind.plots import new_figure
-from levelwind.points import enum_label
+from levelwind.show.plots import new_figure
 from matplotlib.figure import Figure
 
 from .launch import Invariant, Sample, Verdict, play
 from .scenario import FAULTS, scenario
 
 UM_PER_USTEP = 10
-LOS_FLAGS = (Flag.LOS1_PLUS, Flag.LOS1_MINUS, Flag.LOS2_PLUS, Flag.LOS2_MINUS)
+LOS_FLAGS = (Flag.LOS, Flag.LOS1_PLUS, Flag.LOS1_MINUS, Flag.LOS2_PLUS, Flag.LOS2_MINUS)
 MARKS_MM = {
     "flange": (83.0, "tab:red"),
     "reversal": (80.0, "tab:gray"),
@@ -28,7 +29,7 @@ WORST_EACH = 2
 STATEMENTS = {
     Invariant.FLANGE: "In step, with sound switches: the steps command no place past a flange.",
     Invariant.OVERTRAVEL: "No step goes toward an actuated overtravel switch.",
-    Invariant.SILENT: "A wrong lay is told within one traverse.",
+    Invariant.SILENT: "A lay that is wrong to the drum is told within one traverse, or 600 ms.",
     Invariant.PERMIT: "No launch permit without an indexing that really went to both switches.",
     Invariant.BURST: "At most one step per edge, and a microstep of slope between two.",
     Invariant.UNASKED: "No step in a state in which the carriage rests.",
@@ -36,6 +37,8 @@ STATEMENTS = {
     Invariant.ODOMETER: "Every edge on the pins is counted; only hidden edges differ.",
     Invariant.RECOVERY: "A LOS is made good in the sweep after the next reversal.",
     Invariant.FALSE_ALARM: "What does not disturb the lay gives no alarm.",
+    Invariant.STANDING: "Rope laid while the carriage stood is told.",
+    Invariant.LINE: "A request is answered once, also over an echo and after babble.",
 }
 
 STYLE = """
@@ -100,6 +103,7 @@ def worst(launches: Iterable[Launch]) -> dict[Launch, list[str]]:
         ("longest way from being told to being right again", lambda v: v.recovered_edges),
         ("most recoveries in one launch", lambda v: v.recoveries),
         ("most edges hidden from the pins", lambda v: v.hidden_edges),
+        ("most rope laid wrong on a drum too slow for its watch", lambda v: v.slow_turns),
         (
             "most electrical periods slipped while it went on",
             lambda v: v.pole_slips * (not v.fault),

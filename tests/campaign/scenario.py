@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a launch of the campaign does: the machine, the drum, the faults, all of it from one number.
 
 A quarter of all seeds walk through a grid: one fault at a place, a direction and a speed. The
@@ -10,7 +11,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import IntEnum
 
-from levelwind.map_table import BenchCommand, Command, Mode, ParkAt, Side, State, SwitchFault
+from levelwind.map_table import (
+    BenchCommand,
+    ChannelFault,
+    Command,
+    Mode,
+    ParkAt,
+    Side,
+    State,
+    SwitchFault,
+)
 from world import MILLIRPM_PER_EDGE_PER_S, PlantFault, write_requests
 
 REACTION_MS = 2  # until the tick after a request
@@ -21,6 +31,8 @@ STANDING = sum(
         *(State.UNINDEXED, State.READY, State.TRACKING, State.CENTRED, State.OFF, State.FAULT),
     )
 )
+ROCKS = 10_000  # 400 ms
+HARDEST_EDGES_PER_S2 = 50_000  # overspeed_trip to rest in 1.2 s; the drum watch trusts no more
 SMALL_PULSES = 8  # fewer microsteps at once than a rotor can be off its field
 
 
@@ -34,7 +46,10 @@ class ActionKind(IntEnum):
     DRUM = 4
     INJECT = 5
     ARM = 6
-    MASTER = 7
+    ECHO = 7
+    BABBLE = 8
+    MASTER = 9
+    FLIP = 10
 
 
 @dataclass
@@ -48,6 +63,7 @@ class Scenario:
     actions: list[tuple[int, int, int, int, int, int]] = field(default_factory=list)
     requests: bytearray = field(default_factory=bytearray)
     story: list[str] = field(default_factory=list)
+    dithers: bool = False  # armed, it may strike at any time
     _delay_ms: int = 0
 
     def _act(self, kind: ActionKind, *arguments: int) -> None:
@@ -81,9 +97,17 @@ class Scenario:
             self.requests += pdu
         self.run(REACTION_MS)
 
+    def request(self, pdu: bytes) -> None:
+        """A request of any bytes."""
+        self.tell(f"request {pdu.hex(' ')}")
+        self._act(ActionKind.REQUEST, len(self.requests), len(pdu))
+        self.requests += pdu
+
     def drum(self, edges_per_s: float, edges_per_s2: float = 24_000.0) -> None:
         """Let the drum go to a speed, in edges per second of the factory decoding."""
         self.tell(f"drum to {edges_per_s:.0f} edges/s at {edges_per_s2:.0f} edges/s^2")
+        if self.dithers and edges_per_s2 > HARDEST_EDGES_PER_S2:
+            self.harmless = False
         self._act(
             ActionKind.DRUM,
             round(edges_per_s * MILLIRPM_PER_EDGE_PER_S),
@@ -105,10 +129,26 @@ class Scenario:
         self.tell("the master polls" if polls else "the master is silent")
         self._act(ActionKind.MASTER, int(polls))
 
+    def echo(self, on: bool) -> None:
+        """The line begins or ceases to echo."""
+        self.tell("the line echoes" if on else "the line does not echo")
+        self._act(ActionKind.ECHO, int(on))
+
+    def babble(self, milliseconds: int) -> None:
+        """Another device leaves no silence."""
+        self.tell(f"babble on the line for {milliseconds} ms")
+        self._act(ActionKind.BABBLE, milliseconds)
+
+    def flip(self, bit: int) -> None:
+        """A bit of the controller's memory changes by itself."""
+        self.tell(f"bit {bit} of the controller's memory is flipped")
+        self._act(ActionKind.FLIP, bit)
+        self.harmless = False
+
     def rest(self) -> None:
         """Stop the drum, until the controller sees it at rest."""
-        self.drum(0, 96_000)
-        self.run(1000)
+        self.drum(0, 48_000)
+        self.run(2000)
 
 
 @dataclass(frozen=True)
@@ -170,7 +210,67 @@ def illegal_edges(s: Scenario, at: Place) -> None:
 
 def dither(s: Scenario, at: Place) -> None:
     """The encoder rocks about an edge."""
-    s.arm(at.position_um, at.direction, PlantFault.ENCODER_DITHER, _size(at.rng, 1, 3000))
+    s.arm(at.position_um, at.direction, PlantFault.ENCODER_DITHER, _size(at.rng, 1, ROCKS))
+    s.dithers = True
+
+
+def rocking(s: Scenario, at: Place) -> None:
+    """The drum stands, and rocks about one edge."""
+    s.until_position(at.position_um, at.direction)
+    s.rest()
+    s.inject(PlantFault.ENCODER_DITHER, _size(at.rng, 100, ROCKS))
+    s.run(600)
+    s.drum(at.rng.choice((-1, 1)) * 20_000)
+
+
+CHANNELS = (PlantFault.ENCODER_A, PlantFault.ENCODER_B)
+
+
+def _mend(s: Scenario, at: Place, *channels: PlantFault) -> None:
+    """A loose contact that comes back, or not."""
+    if at.rng.random() < 0.5:
+        s.run(_size(at.rng, 5, 3000))
+        for channel in channels:
+            s.inject(channel, ChannelFault.NONE)
+    s.harmless = False
+
+
+def dead_channel(s: Scenario, at: Place) -> None:
+    """A channel of the encoder stands still."""
+    s.until_position(at.position_um, at.direction)
+    channel = at.rng.choice(CHANNELS)
+    s.inject(channel, at.rng.choice((ChannelFault.STUCK_LOW, ChannelFault.STUCK_HIGH)))
+    _mend(s, at, channel)
+
+
+def loose_channel(s: Scenario, at: Place) -> None:
+    """A channel of the encoder has a loose wire."""
+    s.until_position(at.position_um, at.direction)
+    channel = at.rng.choice(CHANNELS)
+    s.inject(channel, ChannelFault.FLICKER)
+    _mend(s, at, channel)
+
+
+def dead_encoder(s: Scenario, at: Place) -> None:
+    """Both channels stand still."""
+    s.until_position(at.position_um, at.direction)
+    for channel in CHANNELS:
+        s.inject(channel, at.rng.choice((ChannelFault.STUCK_LOW, ChannelFault.STUCK_HIGH)))
+    _mend(s, at, *CHANNELS)
+
+
+def stopped_index(s: Scenario, at: Place) -> None:
+    """STOP at any millisecond of an indexing; then it is done again."""
+    s.rest()
+    s.write(command=Command.INDEX)
+    s.run(at.rng.randint(0, 9000))
+    s.write(command=Command.STOP)
+    s.run(at.rng.randint(0, 1500))
+    s.write(mode=Mode.TRACK)
+    s.run(100)
+    s.until_standing()
+    _index(s)
+    s.drum(at.rng.choice((-1, 1)) * 20_000)
 
 
 def bounce(s: Scenario, at: Place) -> None:
@@ -209,6 +309,40 @@ def overtravel(s: Scenario, at: Place) -> None:
     s.harmless = False
 
 
+def overtravel_blip(s: Scenario, at: Place) -> None:
+    """An overtravel contact opens for less than a millisecond, again and again."""
+    s.until_position(at.position_um, at.direction)
+    switch = at.rng.choice((PlantFault.BLIP_PLUS_US, PlantFault.BLIP_MINUS_US))
+    for _ in range(at.rng.randint(1, 20)):
+        s.inject(switch, _size(at.rng, 20, 950))
+        s.run(at.rng.randint(1, 30))
+    s.harmless = False
+
+
+def chatter(s: Scenario, at: Place) -> None:
+    """A limit switch chatters long, as a worn single contact does."""
+    s.inject(PlantFault.BOUNCE_US, _size(at.rng, 10_000, 300_000))
+    s.harmless = False
+
+
+def echo(s: Scenario, at: Place) -> None:
+    """The line echoes: a transceiver that hears itself."""
+    s.echo(True)
+    s.run(_size(at.rng, 100, 3000))
+    commands(s, at)
+    # Requests whose answers are the same bytes.
+    for pdu in (bytes((6, 0, 2, 0, 1)), bytes((6, 0, 2, 0, 0)), bytes((5, 0, 1, 0xFF, 0))):
+        s.request(pdu)
+        s.run(at.rng.randint(5, 500))
+    s.write(mode=Mode.TRACK)
+    s.echo(False)
+
+
+def babble(s: Scenario, at: Place) -> None:
+    """Another device leaves no silence on the line."""
+    s.babble(_size(at.rng, 10, 3000))
+
+
 def reversed_motor(s: Scenario, at: Place) -> None:
     """The motor turns the wrong way from here on."""
     s.until_position(at.position_um, at.direction)
@@ -220,6 +354,17 @@ def power_cut(s: Scenario, at: Place) -> None:
     """The controller restarts; the drum turns on."""
     s.until_position(at.position_um, at.direction)
     s.write(bench_command=BenchCommand.POWER_CUT)
+    s.harmless = False
+
+
+def restart(s: Scenario, at: Place) -> None:
+    """The watchdog restarts the controller in the launch; the master lets it take up the drum."""
+    s.until_position(at.position_um, at.direction)
+    s.write(bench_command=BenchCommand.RESTART)
+    if at.rng.random() < 0.7:
+        for _ in range(at.rng.randint(1, 3)):  # the first one may come too early
+            s.run(at.rng.randint(0, 900))
+            s.write(command=Command.REACQUIRE)
     s.harmless = False
 
 
@@ -270,6 +415,7 @@ def commands(s: Scenario, at: Place) -> None:
             (
                 ("command", Command.STOP),
                 ("command", Command.INDEX),
+                ("command", Command.REACQUIRE),
                 ("command", Command.CLEAR_FAULT),
                 ("mode", Mode.OFF),
                 ("mode", Mode.CENTRE),
@@ -307,9 +453,10 @@ FAULTS: dict[str, Callable[[Scenario, Place], None]] = {
     function.__name__: function
     for function in (
         *(stall, slip, side_load),
-        *(lost_edges, extra_edges, illegal_edges, dither),
-        *(bounce, stuck_switch, broken_wire, overtravel),
-        *(reversed_motor, power_cut, silent_master, overspeed, drum_reversal),
+        *(lost_edges, extra_edges, illegal_edges, dither, rocking),
+        *(dead_channel, loose_channel, dead_encoder, stopped_index),
+        *(bounce, chatter, stuck_switch, broken_wire, overtravel, overtravel_blip, echo, babble),
+        *(reversed_motor, power_cut, restart, silent_master, overspeed, drum_reversal),
         *(parameter_changes, trim, commands),
     )
 }
@@ -341,6 +488,8 @@ def _machine(s: Scenario, rng: random.Random) -> None:
     }
     s.write(**parameters)
     s.write(command=Command.APPLY)
+    if rng.random() < 0.5:  # an encoder without them
+        s.inject(PlantFault.ENCODER_INDEX, 0)
 
 
 def _index(s: Scenario) -> None:
@@ -404,9 +553,32 @@ def scenario(seed: int) -> Scenario:
             s.inject(switch, SwitchFault.NONE)
         s.inject(PlantFault.CARRIAGE_REVERSED, 0)
         s.inject(PlantFault.STALL_MS, 0)
+        for channel in CHANNELS:
+            s.inject(channel, ChannelFault.NONE)
         s.write(mode=Mode.TRACK)
         _index(s)
+        s.write(command=Command.ACKNOWLEDGE_ROPE)
         s.drum(rng.choice((-1, 1)) * 20_000)
         s.run(3000)
     s.rest()
     return s
+
+
+def flip_scenario(seed: int, bits: int, bit: int | None = None) -> tuple[Scenario, int]:
+    """A sound launch in which one bit of the controller's memory is flipped; and which one."""
+    rng = random.Random(seed)
+    s = Scenario(seed, faults=["flip"])
+    bit = rng.randrange(bits) if bit is None else bit
+    s.run(300)
+    s.write(encoder_watch_ms=500)
+    s.write(command=Command.APPLY)
+    _index(s)
+    s.drum(rng.choice((1, 1, 1, -1)) * rng.randint(8_000, 48_000), 48_000)
+    s.run(rng.randint(0, 3000))
+    s.flip(bit)
+    # More than two traverses, and as many after a rest.
+    for speed in (48_000, 30_000):
+        s.drum(speed, 48_000)
+        s.run(5000)
+        s.rest()
+    return s, bit

@@ -1,8 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """The compiled slave on a line with exact times, and slaves that are broken on purpose."""
 
 from collections.abc import Callable, Sequence
 
-from levelwind.conformance.line import CHARACTER_BITS, Received, crc16, sealed
+from levelwind.conformance.line import Received, crc16, sealed
+from levelwind.line.port import CHARACTER_BITS
 from world import World
 
 BAUD = 19200

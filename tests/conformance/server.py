@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Other people's Modbus RTU servers: `server.py pymodbus|libmodbus PORT` serves until killed."""
 
 import ctypes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The suite passes the slave that is right, and catches each of the slaves that are not."""
 
 import pytest

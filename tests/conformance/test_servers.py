@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Other people's servers: what they do otherwise than the standard, found and listed.
 
 The lists show that the suite tells right from wrong, and what an integrator may meet. They hold for
@@ -18,7 +19,7 @@ from levelwind.conformance.line import SerialLine
 from levelwind.conformance.slave import Slave
 from levelwind.conformance.suite import Outcome, Verdict, all_cases, run
 from levelwind.conformance.survey import survey
-from levelwind.device import Line
+from levelwind.line.port import Line
 from slave import NullModem
 
 SERVER = Path(__file__).with_name("server.py")

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The register bank of a whole device, without the checks that Modbus makes before it. The input is
  * a list of accesses: what, address, count, and for a write the data.

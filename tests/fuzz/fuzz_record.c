@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * What a storage may hold, at power-up: only what the controller itself could have written is used.
  * The first byte of the input says what follows: 0 what a slot of the parameters holds, 1 what a
@@ -9,7 +10,7 @@
 #include <string.h>
 
 #include "judge.h"
-#include "lw/param_record.h"
+#include "lw/storage/param_record.h"
 
 /** What the storage holds. */
 struct content {

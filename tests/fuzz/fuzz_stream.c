@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Bytes on the line of a whole simulated machine. The input is a list of frames: a control byte, a
  * length byte, the bytes.

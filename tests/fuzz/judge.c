@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "judge.h"
 
 #include <stdio.h>
@@ -53,6 +54,7 @@ void judge_init(struct judge *judge, uint64_t seed)
 	const struct lw_world_config config = {.seed = seed, .carriage_um = CARRIAGE_UM};
 
 	judge->line_us = 0;
+	judge->answer_length = 0;
 	if (lw_world_init(&judge->world, &config, judge->line_us)) {
 		abort();
 	}
@@ -79,6 +81,14 @@ static void permit_counting(struct judge *judge)
 
 	PERMIT(slave.rtu);
 	PERMIT(slave.pdu.counters);
+	PERMIT(slave.echoes);
+	PERMIT(slave.foreign_answers);
+	PERMIT(slave.babbles);
+	PERMIT(slave.babbling);
+	PERMIT(slave.repeats_left);
+	PERMIT(slave.sent_length);
+	PERMIT(slave.sent_us);
+	PERMIT(slave.sent);
 }
 
 /* What a request to this unit may change without being a write that is done. */
@@ -102,6 +112,7 @@ static void permit_refusal(struct judge *judge)
 	const struct lw_device *now = &judge->world.device;
 
 	PERMIT(command);
+	PERMIT(asked);
 	PERMIT(lock);
 }
 
@@ -117,6 +128,34 @@ static void require_unchanged(const struct judge *judge, const uint8_t *bytes, s
 			      judge->power_cut == world->bench.power_cut &&
 			      judge->profile_count == world->bench.profile_count,
 		      "the machine has changed", bytes, count);
+}
+
+/* What no master sends (application protocol V1.1b3, section 6: the responses). */
+static bool is_response(const uint8_t *pdu, size_t length)
+{
+	const bool counted = length > 2 && length == 2u + pdu[1];
+
+	switch (pdu[0]) {
+	case 1:
+	case 2:
+		return counted && length != 5;
+	case 3:
+	case 4:
+		return counted && length != 5 && length % 2 == 0;
+	case 15:
+	case 16:
+		return length == 5;
+	case 17:
+		return counted;
+	case 20:
+		return counted && length > 4 && (pdu[2] & 1) && pdu[3] == 6;
+	case 23:
+		return counted && length % 2 == 0 && !(length > 10 && length == 10u + pdu[9]);
+	case 43:
+		return length >= 7 && pdu[1] == 14 && pdu[3] >= 0x80;
+	default:
+		return pdu[0] >= 0x80;
+	}
 }
 
 static bool only_reads(uint8_t function)
@@ -146,6 +185,7 @@ static size_t exchange(struct judge *judge, const uint8_t *bytes, size_t count, 
 {
 	struct lw_slave *slave = &judge->world.device.slave;
 	uint64_t deadline_us;
+	size_t length;
 
 	lw_slave_receive(slave, bytes, first, judge->line_us);
 	lw_slave_receive(slave, bytes + first, count - first, judge->line_us);
@@ -154,7 +194,36 @@ static size_t exchange(struct judge *judge, const uint8_t *bytes, size_t count, 
 		return 0;
 	}
 	judge->line_us = deadline_us;
-	return lw_slave_poll(slave, deadline_us, tx);
+	length = lw_slave_poll(slave, deadline_us, tx);
+	if (length > 0) {
+		memcpy(judge->answer, tx, length);
+		judge->answer_length = length;
+	}
+	return length;
+}
+
+/* Bytes in which the last answer stands may be its echo, and what follows it another frame. */
+static bool may_be_an_echo(const struct judge *judge, const uint8_t *bytes, size_t count)
+{
+	for (size_t at = 0; at + judge->answer_length <= count; at++) {
+		if (judge->answer_length > 0 &&
+		    memcmp(bytes + at, judge->answer, judge->answer_length) == 0) {
+			return true;
+		}
+	}
+	return false;
+}
+
+/* The line gives back what was sent: it is not answered, and nothing happens. */
+static void echo(struct judge *judge, const uint8_t *tx, size_t length)
+{
+	uint8_t second[LW_RTU_FRAME_MAX];
+
+	remember(judge);
+	judge_require(exchange(judge, tx, length, length / 2, second) == 0, "an echo is answered",
+		      tx, length);
+	permit_counting(judge);
+	require_unchanged(judge, tx, length);
 }
 
 enum judge_outcome judge_frame(struct judge *judge, const uint8_t *bytes, size_t count,
@@ -165,6 +234,7 @@ enum judge_outcome judge_frame(struct judge *judge, const uint8_t *bytes, size_t
 	const bool intact =
 		count >= FRAME_MIN && count <= LW_RTU_FRAME_MAX && judge_crc(bytes, count) == 0;
 	const bool was_listening_only = pdu->listen_only;
+	const bool echoes = may_be_an_echo(judge, bytes, count);
 	enum judge_outcome outcome;
 	uint8_t tx[LW_RTU_FRAME_MAX];
 	size_t length;
@@ -173,8 +243,13 @@ enum judge_outcome judge_frame(struct judge *judge, const uint8_t *bytes, size_t
 	length = exchange(judge, bytes, count, first, tx);
 	permit_counting(judge);
 
-	if (!intact || (bytes[0] != unit_id && bytes[0] != BROADCAST)) {
-		judge_require(length == 0, "an invalid frame is answered", bytes, count);
+	if (echoes && length == 0) {
+		return JUDGE_DROPPED;
+	}
+	if (!intact || (bytes[0] != unit_id && bytes[0] != BROADCAST) ||
+	    is_response(&bytes[1], count - 3)) {
+		judge_require(length == 0, "an invalid frame or an answer is answered", bytes,
+			      count);
 		require_unchanged(judge, bytes, count);
 		return JUDGE_DROPPED;
 	}
@@ -195,14 +270,18 @@ enum judge_outcome judge_frame(struct judge *judge, const uint8_t *bytes, size_t
 		outcome = JUDGE_UNHEARD;
 	} else {
 		require_form(bytes, count, tx, length);
-		if (tx[1] == bytes[1] && !(tx[1] & EXCEPTION_BIT)) {
-			if (only_reads(bytes[1]) || bytes[1] == 8) {
-				require_unchanged(judge, bytes, count);
-			}
-			return JUDGE_ANSWERED;
+		outcome = tx[1] & EXCEPTION_BIT ? JUDGE_REFUSED : JUDGE_ANSWERED;
+		if (outcome == JUDGE_REFUSED) {
+			permit_refusal(judge);
 		}
-		permit_refusal(judge);
-		outcome = JUDGE_REFUSED;
+		if (outcome == JUDGE_REFUSED || only_reads(bytes[1]) || bytes[1] == 8) {
+			require_unchanged(judge, bytes, count);
+		}
+		/* Some lines echo, some do not. */
+		if (tx[length - 1] & 1) {
+			echo(judge, tx, length);
+		}
+		return outcome;
 	}
 	require_unchanged(judge, bytes, count);
 	return outcome;

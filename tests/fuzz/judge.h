@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A slave with its whole machine behind it, and a judge who knows what each frame may do to them:
@@ -26,7 +27,9 @@ enum judge_outcome {
 /** State. */
 struct judge {
 	struct lw_world world;
-	uint64_t line_us; /**< time of the line, which is not that of the world */
+	uint64_t line_us;                 /**< time of the line, which is not that of the world */
+	uint8_t answer[LW_RTU_FRAME_MAX]; /**< the last one */
+	size_t answer_length;
 
 	/* What must not have changed. */
 	struct lw_device device;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * random_frames COUNT SEED: that many frames, valid, mutated, truncated, glued and mere noise, into
  * the slave of a whole simulated machine. The judge says after each what it may have done, and a

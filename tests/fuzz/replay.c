@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * In place of a fuzzer, where the compiler has none: every file that is named, once.
  */

@@ -1,7 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """The integration suite talks Modbus to a running slave, whichever it is.
 
 --target sim                 starts the simulator (default)
 --target native_sim          starts the firmware, built for Zephyr's native_sim
+--target board               starts the firmware for the Nucleo on the board of tests/board
 --target qemu                starts the firmware, built for mps2/an385, in QEMU
 --target serial:/dev/ttyX    a slave that is there already; it must have the bench block
 """
@@ -14,7 +16,7 @@ from slave import RawLine, Simulator, Slave, bring_to_rest, start
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--target", default="sim", help="sim, native_sim, qemu, or serial:PATH")
+    parser.addoption("--target", default="sim", help="sim, native_sim, board, qemu, or serial:PATH")
 
 
 @pytest.fixture(scope="session")

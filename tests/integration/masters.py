@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Four masters that others have written, behind one small interface."""
 
 import ctypes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the integration tests drive: a simulator process, a slave by register names, a bare line."""
 
 import atexit
@@ -5,6 +6,7 @@ import os
 import select
 import signal
 import subprocess
+import sys
 import threading
 import tty
 from collections.abc import Callable
@@ -42,14 +44,19 @@ def start(target: str, folder: Path, storage: Path, *, fast: bool = False) -> Si
 
     `storage` is the file that keeps its parameters. `fast` lets its time pass faster than ours.
     """
-    starters = {"sim": start_simulator, "native_sim": start_native_sim, "qemu": start_qemu}
+    starters = {
+        "sim": start_simulator,
+        "native_sim": start_native_sim,
+        "board": start_board,
+        "qemu": start_qemu,
+    }
     return starters[target](folder, storage, fast)
 
 
-def start_simulator(folder: Path, storage: Path, fast: bool) -> Simulator:
+def start_simulator(folder: Path, storage: Path, fast: bool, *options: str) -> Simulator:
     port = folder / "port"
     process = subprocess.Popen(
-        [str(NATIVE_DIR / "lw_sim"), "--port", str(port), "--storage", str(storage)]
+        [str(NATIVE_DIR / "lw_sim"), "--port", str(port), "--storage", str(storage), *options]
         + ["--speed", "10"] * fast,
         stdout=subprocess.PIPE,
         text=True,
@@ -57,6 +64,23 @@ def start_simulator(folder: Path, storage: Path, fast: bool) -> Simulator:
     assert process.stdout is not None
     line = process.stdout.readline()
     assert line == f"ready {port}\n", f"the simulator said {line!r}"
+    return Simulator(port, process)
+
+
+def start_board(folder: Path, storage: Path, fast: bool) -> Simulator:
+    """Its flash is erased at once: what a request meets that falls into an erasure, tests/board."""
+    port = folder / "port"
+    process = subprocess.Popen(
+        [sys.executable, "-m", "board.serve", "--port", str(port), "--storage", str(storage)]
+        + ["--erase-ms", "1"]
+        + ["--speed", "4"] * fast,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    assert line == f"ready {port}\n", f"the board said {line!r}"
     return Simulator(port, process)
 
 
@@ -233,9 +257,17 @@ def bring_to_rest(slave: Slave) -> None:
     assert slave.command(Command.FACTORY_ALL) == Result.DONE
     assert slave.command(Command.APPLY) == Result.DONE
     assert slave.command(Command.CLEAR_FAULT) == Result.DONE
+    if slave.flag(Flag.SET_UNCONFIRMED):
+        assert slave.command(Command.SAVE) == Result.DONE
     slave.write("trim_plus_um", 0)
     slave.write("trim_minus_um", 0)
     slave.write("mode", Mode.TRACK)
+    if slave.flag(Flag.ROPE_LAID_STANDING):
+        assert slave.command(Command.INDEX) == Result.DONE
+        assert slave.command(Command.ACKNOWLEDGE_ROPE) == Result.DONE
+        slave.write("mode", Mode.OFF)
+        slave.wait(lambda: slave.read("state") == State.OFF)
+        slave.write("mode", Mode.TRACK)
     slave.wait(lambda: slave.read("state") == State.UNINDEXED)
 
 

@@ -1,9 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
 """A cam table over the line: loaded by the tool, followed, changed as it runs, kept."""
 
+from collections.abc import Callable
 from math import cos, pi
 from pathlib import Path
 
-from levelwind.cam import Table
+from levelwind.cam.table import Table
+from levelwind.files import cam_files
 from levelwind.map_table import (
     BenchCommand,
     CamBankState,
@@ -14,7 +17,7 @@ from levelwind.map_table import (
     State,
 )
 from rational_cam import RationalCam
-from slave import Slave
+from slave import Simulator, Slave
 from test_life import turn_drum
 from test_restart import reconnect
 from test_tool import output, refusal
@@ -117,3 +120,25 @@ def test_what_is_in_force_is_there_after_a_power_cut(slave: Slave, tmp_path: Pat
     # And the one before it.
     assert slave.command(Command.CAM_ACTIVATE) == Result.DONE
     assert (slave.read("cam_version"), slave.read("cam_rows")) == (3, len(HILL.rows))
+
+
+def test_an_upload_is_what_download_next_reads_also_before_anything_is_in_force(
+    own_simulator: Callable[..., Simulator], tmp_path: Path
+) -> None:
+    port = str(own_simulator().port)
+    table = tmp_path / "table.csv"
+    assert "No table is in force" in refusal(port, "cam", "download", str(table))
+    assert "No table was uploaded" in refusal(port, "cam", "download", "--next", str(table))
+    assert not table.exists()
+    output(port, "cam", "upload", write_table(tmp_path / "hill.csv", HILL))
+    assert "256 rows" in output(port, "cam", "download", "--next", str(table))
+    assert cam_files.read(table) == HILL.rows
+    output(port, "cam", "activate")
+    # And whichever bank is in force.
+    for uploaded, in_force in ((PIT, HILL), (HILL, PIT)):
+        output(port, "cam", "upload", write_table(tmp_path / "next.csv", uploaded))
+        output(port, "cam", "download", "--next", str(table))
+        assert cam_files.read(table) == uploaded.rows
+        output(port, "cam", "download", str(table))
+        assert cam_files.read(table) == in_force.rows
+        output(port, "cam", "activate")

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The running slave through the conformance suite: nothing but passes."""
 
 from levelwind.conformance import framing, others, reads, writes  # noqa: F401 - they hold the cases
@@ -5,7 +6,7 @@ from levelwind.conformance.line import SerialLine
 from levelwind.conformance.slave import Slave as AnySlave
 from levelwind.conformance.suite import Verdict, all_cases, run
 from levelwind.conformance.survey import survey
-from levelwind.device import Line
+from levelwind.line.port import Line
 from levelwind.map_table import POINTS
 from slave import UNIT, Slave
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The worked examples of doc/integration.md against a slave that was just switched on."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No answer later than 20 ms while the drum turns at its fastest."""
 
 from pathlib import Path

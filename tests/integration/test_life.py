@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The life of the controller over the line: indexing, tracking, losing synchronization, modes."""
 
 from levelwind.map_table import (

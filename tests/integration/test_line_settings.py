@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Line settings on trial, over a real line: confirmed and saved, or back to the old ones."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The write lock as the tool sees it; what it guards is tested in tests/system."""
 
 from collections.abc import Callable, Iterator

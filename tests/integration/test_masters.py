@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is promised to every master: four of them, written by others, use the same slave."""
 
 import os
@@ -6,6 +7,7 @@ import subprocess
 from collections.abc import Iterator
 
 import pytest
+from levelwind.line.points import lookup, runs
 from levelwind.map_table import (
     POINTS,
     PRODUCT_CODE,
@@ -16,7 +18,6 @@ from levelwind.map_table import (
     Result,
     State,
 )
-from levelwind.points import lookup, runs
 from masters import MASTERS, ExceptionAnswer, Libmodbus, Master, Pymodbus
 from pymodbus.pdu.file_message import FileRecord
 from slave import TEST_DIR, UNIT, Slave

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Staged parameters, APPLY, REVERT, SAVE, FACTORY, and what survives a restart."""
 
 import signal
@@ -163,7 +164,8 @@ def test_a_record_of_schema_1_is_converted_and_kept_until_the_second_save(
 ) -> None:
     if target != "sim":
         pytest.skip("only the simulator's storage is a plain file")
-    points = [point for point in PARAMETERS if point.address <= 183]  # those of that time
+    later = ("breaker_millirev", "breaker_cycles", "switch_delay_us")
+    points = [p for p in PARAMETERS if p.address <= 183 and p.name not in later]
     values = [point.default + (point.name == "rope_per_drum_rev_um") for point in points]
     old = struct.pack(f"<4sHH{len(points)}i", b"LWPS", 1, len(points), *values)
     old += struct.pack("<I", zlib.crc32(old))

@@ -1,10 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
 """Everything at once at 48,000 edges/s, the fastest drum: nothing may be lost and nothing mixed."""
 
 from itertools import count
 
 import pytest
-from levelwind.ideal_screw import Screw
-from levelwind.ideal_screw import State as LawState
+from levelwind.core.ideal_screw import Screw
+from levelwind.core.ideal_screw import State as LawState
 from levelwind.map_table import Command, Flag, Reason, Result, State
 from slave import Slave
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Restarts that nobody asked for: by a thread that hangs, by a power cut while saving."""
 
 import errno
@@ -8,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from levelwind.cam import Table, from_words, words
+from levelwind.cam.table import Table, from_words, words
 from levelwind.map_table import (
     POINTS,
     BenchCommand,

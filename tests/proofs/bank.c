@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Reading the register bank: whatever a request asks for, nothing is accessed outside of the
  * answer, of the tables and of the memory that they describe. The tables are any that keep
@@ -36,8 +37,8 @@ void fill_bytes(uint8_t *to, int value, size_t count);
 			    : copy_narrow((int32_t *)(to), from, count))
 #define memset fill_bytes
 
-#include "../../lib/lw_core/src/big_endian.h"
-#include "lw/bank.h"
+#include "lw/bytes/big_endian.h"
+#include "lw/modbus/bank.h"
 
 /*@
   requires \valid(at + (0 .. 1));
@@ -216,7 +217,7 @@ int lw_bank_read_bits(const struct lw_bank *bank, enum lw_space space, uint16_t 
 */
 bool lw_point_allows(const struct lw_point *point, int64_t value, int32_t *limit);
 
-#include "../../lib/lw_core/src/bank.c"
+#include "../../lib/lw_core/src/modbus/bank.c"
 
 /*@
   requires \valid_read(point);
@@ -263,11 +264,17 @@ static struct place find_in(const struct lw_bank_section *section, uint32_t addr
 static struct place find(const struct lw_bank *bank, enum lw_space space, uint32_t address);
 
 /*@
+  assigns \nothing;
+*/
+static inline int32_t lw_clamp32(int64_t value);
+
+/*@
   requires \valid(why);
   assigns *why;
   ensures \result == error;
 */
-static int refuse(struct lw_refusal *why, int error, enum lw_reason reason, uint32_t address);
+static inline int lw_refuse(struct lw_refusal *why, int error, enum lw_reason reason,
+			    uint32_t address, int64_t value, int64_t limit);
 
 /*@
   requires bank_ok(bank) && \valid(why) && APART(bank, why);

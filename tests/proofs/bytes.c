@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Foreign bytes: what a storage holds, and what comes from the line. Whatever they are and however
  * many, nothing is accessed outside of them.
@@ -8,7 +9,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "../../lib/lw_core/src/big_endian.h"
+#include "lw/bytes/big_endian.h"
 
 /*
  * WP cannot follow uint8_t through the char of Frama-C's C library. What C demands of these two is
@@ -42,13 +43,22 @@ static inline uint16_t lw_get16(const uint8_t *at);
 */
 static inline uint32_t lw_get32(const uint8_t *at);
 
-#include "lw/record.h"
+#include "lw/bytes/crc32.h"
+#include "lw/storage/record.h"
 
 /*@
   requires \valid_read(bytes + (0 .. length - 1));
   assigns \nothing;
 */
-uint32_t lw_crc32(const uint8_t *bytes, size_t length);
+uint32_t lw_crc32_add(uint32_t crc, const uint8_t *bytes, size_t length);
+
+/*@
+  requires \valid_read(bytes + (0 .. length - 1));
+  assigns \nothing;
+*/
+static inline uint32_t lw_crc32(const uint8_t *bytes, size_t length);
+
+#include "../../lib/lw_core/src/bytes/crc32.c"
 
 /*@
   requires \valid_read(bytes + (0 .. size - 1));
@@ -66,10 +76,10 @@ static bool erased(const uint8_t *bytes, size_t size);
 */
 int lw_record_open(const uint8_t *bytes, size_t size, const char *kind, struct lw_record *record);
 
-#include "../../lib/lw_core/src/record.c"
+#include "../../lib/lw_core/src/storage/record.c"
 
-#include "lw/crc16.h"
-#include "lw/rtu.h"
+#include "lw/modbus/crc16.h"
+#include "lw/modbus/rtu.h"
 
 /*@
   requires \valid_read(bytes + (0 .. count - 1));
@@ -77,7 +87,7 @@ int lw_record_open(const uint8_t *bytes, size_t size, const char *kind, struct l
 */
 uint16_t lw_crc16(const uint8_t *bytes, size_t count);
 
-#include "../../lib/lw_core/src/crc16.c"
+#include "../../lib/lw_core/src/modbus/crc16.c"
 
 /*@
   requires \valid(rtu) && rtu->length <= LW_RTU_FRAME_MAX + 1;
@@ -101,6 +111,13 @@ uint64_t lw_rtu_deadline_us(const struct lw_rtu *rtu);
 static bool is_complete(const struct lw_rtu *rtu, uint64_t now_us);
 
 /*@
+  requires \valid(rtu);
+  assigns *rtu;
+  ensures rtu->length == 0;
+*/
+void lw_rtu_drop(struct lw_rtu *rtu);
+
+/*@
   requires \valid(rtu) && \valid(frame) && \separated(rtu, frame);
   requires rtu->length <= LW_RTU_FRAME_MAX + 1;
   assigns *rtu, *frame;
@@ -116,7 +133,7 @@ int lw_rtu_poll(struct lw_rtu *rtu, uint64_t now_us, const uint8_t **frame);
 */
 size_t lw_rtu_seal(uint8_t *frame, size_t length);
 
-#include "../../lib/lw_core/src/rtu.c"
+#include "../../lib/lw_core/src/modbus/rtu.c"
 
 /*
  * A parameter set is written by the offsets of its table: here it is its bytes.
@@ -132,8 +149,8 @@ struct lw_params {
 };
 extern const struct lw_params lw_params_default;
 
-#include "lw/bank.h"
-#include "lw/param_record.h"
+#include "lw/modbus/bank.h"
+#include "lw/storage/param_record.h"
 
 /*@
   requires count == 4 && \valid(to + (0 .. 3)) && \valid_read(from);
@@ -203,4 +220,4 @@ static int decode_2(const struct lw_record *record, struct lw_params *params);
 int lw_param_record_decode(const uint8_t *bytes, size_t size, struct lw_params *params,
 			   struct lw_record *record);
 
-#include "../../lib/lw_core/src/param_record.c"
+#include "../../lib/lw_core/src/storage/param_record.c"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * What law.c takes for granted of the compiler, tried on every value: C leaves it to the compiler
  * how a value above INT32_MAX becomes an int32_t, and how a negative one is shifted to the right.
@@ -6,7 +7,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "lw/law.h"
+#include "lw/motion/law.h"
 
 int main(void)
 {

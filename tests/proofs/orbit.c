@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "orbit.h"
 
 /*@
@@ -99,6 +100,16 @@ void orbit_is_kept(int begin, int end, int ka, int nr, int m, int u, int d, int 
 			//@ assert edge_stays(begin, end, ka, nr, m, u, d, dd);
 		}
 	}
+}
+
+void far_point_is_on_orbit(int begin, int end, int ka, int nr, int m)
+{
+	both_are_small(ka, nr);
+	//@ assert nr * (nr + 1) == nr * (nr - 1) + 2 * nr;
+	//@ assert ka * (nr * (nr + 1)) == ka * (nr * (nr - 1)) + 2 * (ka * nr);
+	//@ assert nr * (nr - 1) >= 0;
+	//@ assert ka * (nr * (nr - 1)) >= 0;
+	//@ assert run(ka, nr, 0) == ka * (nr * (nr - 1));
 }
 
 void orbit_is_reached(int begin, int end, int ka, int nr, int m, int u, int d, int dd, int m_after,

@@ -1,7 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The law in whole numbers, and the theorem about it: an edge leads from one place on the orbit to
  * another. doc/control-law.md, section 2, has both in words. The proof is in orbit.c; law.c proves
- * that lw/law.h computes this law.
+ * that lw/motion/law.h computes this law.
  *
  * ka: slope change per edge in a reversal; nr * ka: slope in the sweep; [begin, end): the sweep;
  * m: position; u: slope; d: the slope in units of ka, nr less the edges since the reversal began.
@@ -59,6 +60,14 @@
   ensures next: edge_stays(begin, end, ka, nr, m, u, d, dd);
 */
 void orbit_is_kept(int begin, int end, int ka, int nr, int m, int u, int d, int dd);
+
+/*@
+  requires accepted(begin, end, ka, nr);
+  requires 2 * (begin - m) == ka * (nr * (nr + 1)) || 2 * (m - end) == ka * (nr * (nr - 1));
+  assigns \nothing;
+  ensures orbit(begin, end, ka, nr, m, 0, 0);
+*/
+void far_point_is_on_orbit(int begin, int end, int ka, int nr, int m);
 
 /*@
   requires edge_stays(begin, end, ka, nr, m, u, d, dd);

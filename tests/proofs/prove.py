@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Prove what doc/control-law.md and doc/architecture.md call proved: `./dev proof`.
 
 Frama-C's WP makes goals of the annotated C and has them proved by Z3 and CVC4. A proof that would
@@ -24,14 +25,16 @@ MUTANT_TIMEOUT_S = 4
 
 # C11, 6.3.1.3, which WP does not know; where C leaves it to the compiler, conversions.c tries it.
 AXIOMS = {"uint32_below", "uint32_above", "int32_above", "uint16_of_uint32"}
-BYTES = "lw_record_open,erased,lw_crc32,lw_crc16,"
-BYTES += "lw_rtu_receive,lw_rtu_poll,is_complete,lw_rtu_deadline_us,lw_rtu_seal,"
+BYTES = "lw_record_open,erased,lw_crc32,lw_crc32_add,lw_crc16,"
+BYTES += "lw_rtu_receive,lw_rtu_poll,lw_rtu_drop,is_complete,lw_rtu_deadline_us,lw_rtu_seal,"
 BYTES += "lw_param_record_decode,is_schema_1,decode_1,decode_2,take,get32_1"
 BANK = "lw_bank_read_registers,lw_bank_read_bits,lw_point_allows,"
-BANK += "check_known,find,find_in,point_before,registers_of,load,refuse"
+BANK += "check_known,find,find_in,point_before,registers_of,load,lw_refuse,lw_clamp32"
+TOGETHER = "lw_law_short_edges,lw_law_edges_to_step"
 PROOFS = {
-    # A shift, which WP has no rules for when negative: conversions.c tries it on every value.
-    "law.c": ("-wp-skip-fct=lw_law_pos_usteps",),
+    # A shift, which WP has no rules for when negative: conversions.c tries it on every value. And
+    # edges taken together, which the tests compare with the edges one by one.
+    "law.c": (f"-wp-skip-fct=lw_law_pos_usteps,{TOGETHER}",),
     "bytes.c": (f"-wp-fct={BYTES}",),
     # That a called pointer is a function, WP knows from the annotation `calls`.
     "bank.c": (f"-wp-fct={BANK}", "-rte-no-pointer-call"),
@@ -56,14 +59,15 @@ class Mutant:
     properties: str = "@ensures"
 
 
-LAW_H = "lib/lw_core/include/lw/law.h"
-LAW_C = "lib/lw_core/src/law.c"
-RECORD_C = "lib/lw_core/src/record.c"
-RTU_C = "lib/lw_core/src/rtu.c"
-BANK_C = "lib/lw_core/src/bank.c"
-PARAMS_C = "lib/lw_core/src/param_record.c"
-CRC16_C = "lib/lw_core/src/crc16.c"
+LAW_H = "lib/lw_core/include/lw/motion/law.h"
+LAW_C = "lib/lw_core/src/motion/law.c"
+RECORD_C = "lib/lw_core/src/storage/record.c"
+RTU_C = "lib/lw_core/src/modbus/rtu.c"
+BANK_C = "lib/lw_core/src/modbus/bank.c"
+PARAMS_C = "lib/lw_core/src/storage/param_record.c"
+CRC16_C = "lib/lw_core/src/modbus/crc16.c"
 ORBIT_H = "tests/proofs/orbit.h"
+FAR_POINT = ("far_point_is_on_orbit", "orbit.c")
 EDGE = "lw_law_short_edge"
 RECORD = ("lw_record_open", "bytes.c", "-@ensures")
 RECEIVE = ("lw_rtu_receive", "bytes.c", "-@ensures")
@@ -75,6 +79,9 @@ FIND = ("find", "bank.c", "@invariant")
 LOAD = ("load", "bank.c", "-@ensures")
 READ = ("lw_bank_read_registers", "bank.c", "@requires")
 CHANGE = "lw_law_slope_change"
+RESTS = "lw_law_rests"
+PASS = "pass_far_point"
+TRIANGLE = ("breaker_adds", "law.c", "triangle")
 MUTANTS = (
     Mutant(LAW_H, "? law->ka : -law->ka", "? -law->ka : law->ka", CHANGE),
     Mutant(LAW_H, "at >= law->below_from", "at > law->below_from", CHANGE),
@@ -83,9 +90,18 @@ MUTANTS = (
     Mutant(LAW_H, "slope_change(law, to)", "slope_change(law, rel)", EDGE),
     Mutant(LAW_H, "to = rel - (uint32_t)u;", "to = rel - (uint32_t)law->ka;", EDGE),
     Mutant(LAW_H, "(uint16_t)rel - u)", "(uint16_t)rel - u - 1)", EDGE),
-    Mutant(LAW_C, "edges < dwell_edges", "edges <= dwell_edges", "lw_law_rests"),
+    Mutant(LAW_C, "edges < dwell_of", "edges <= dwell_of", RESTS),
+    # The ribbon breaker: its triangle, and the numbers of the cycle.
+    Mutant(LAW_C, "(cycle < down ? cycle : down)", "cycle", *TRIANGLE),
+    Mutant(LAW_C, "? cycle + 1 : 0", "? cycle + 1 : 1", "cycle_then"),
+    Mutant(LAW_C, "cycle > 0 ? cycle - 1", "cycle > 1 ? cycle - 1", "cycle_then"),
+    Mutant(LAW_C, "cycle_minus = cycle_then(law, law->cycle_minus, dd)", "cycle_minus = 0", PASS),
+    Mutant(LAW_C, "if (dd < 0 && law->u == lw", "if (law->u == lw", RESTS),
     # The paper's law: the same change of slope in both directions.
     Mutant(ORBIT_H, ": -region(", ": region(", "orbit_is_kept", "orbit.c", "@assert"),
+    # The far point that a turning drum is taken up from.
+    Mutant(ORBIT_H, "(begin - m) == ka * (nr * (nr + 1))", "(begin - m) == 0", *FAR_POINT),
+    Mutant(ORBIT_H, "(m - end) == ka * (nr * (nr - 1))", "(m - end) == ka", *FAR_POINT),
     Mutant(RECORD_C, "length > size - LW", "length > size + LW", *RECORD),
     Mutant(RECORD_C, "size < LW_RECORD_OVERHEAD", "size < 4", *RECORD),
     Mutant(RTU_C, "count > LW_RTU_FRAME_MAX - rtu->length", "count > LW_RTU_FRAME_MAX", *RECEIVE),

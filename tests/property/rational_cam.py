@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cam in rational arithmetic, written from doc/cam.md and nothing else."""
 
 from bisect import bisect
@@ -8,7 +9,7 @@ from itertools import pairwise
 from math import floor, inf
 
 from hypothesis import strategies as st
-from levelwind.cam import Scale, Table
+from levelwind.cam.table import Scale, Table
 from levelwind.map_table import CamInterpolation
 
 STEPS_PER_EDGE_MAX = 4

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The control law in Python, edge by edge, written from doc/control-law.md and nothing else.
 
 Integers here have no size; every edge checks that the compiled law's fit into 32 bits.
@@ -22,6 +23,8 @@ class Pattern:
     minus: int
     dwell_plus: int = 0
     dwell_minus: int = 0
+    breaker: int = 0
+    cycles: int = 0
 
     @property
     def ks(self) -> int:
@@ -50,7 +53,7 @@ class Pattern:
         return 1 if m >> 16 <= self.minus else 0
 
     def setup(self, m: int, u: int) -> dict[str, int]:
-        """For levelwind.native.replay."""
+        """For levelwind.core.native.replay."""
         return {
             "ka": self.ka,
             "nr": self.nr,
@@ -60,7 +63,16 @@ class Pattern:
             "u": u,
             "dwell_plus_edges": self.dwell_plus,
             "dwell_minus_edges": self.dwell_minus,
+            "breaker_edges": self.breaker,
+            "breaker_cycles": self.cycles,
         }
+
+    def dwell(self, at_plus: bool, passed: int) -> int:
+        """The dwell at a far point of a side, of which so many have been passed, net."""
+        steps = passed % self.cycles if self.cycles else 0
+        steps = min(steps, self.cycles - steps)
+        adds = self.breaker * steps // (self.cycles // 2) if self.breaker else 0
+        return (self.dwell_plus if at_plus else self.dwell_minus) + adds
 
 
 @dataclass
@@ -71,6 +83,8 @@ class Model:
     m: int
     u: int
     rested: int = 0
+    passed: dict[bool, int] = field(default_factory=lambda: {True: 0, False: 0})
+    """Far points that lie behind, at plus (True) and at minus: counted without end."""
     positions: list[int] = field(default_factory=list)
     steps: list[int] = field(default_factory=list)
 
@@ -88,12 +102,15 @@ class Model:
         return self
 
     def _dwell(self) -> int:
-        return self.pattern.dwell_plus if self.m >= self.pattern.end else self.pattern.dwell_minus
+        at_plus = self.m >= self.pattern.end
+        return self.pattern.dwell(at_plus, self.passed[at_plus])
 
     def _forward(self) -> None:
-        if self.u == 0 and self.rested < self._dwell():
-            self.rested += 1
-            return
+        if self.u == 0 and self.pattern.region(self.m) != 0:
+            if self.rested < self._dwell():
+                self.rested += 1
+                return
+            self.passed[self.m >= self.pattern.end] += 1
         self.rested = 0
         self.u += self.pattern.region(self.m) * self.pattern.ka
         self.m += self.u
@@ -104,8 +121,13 @@ class Model:
             return
         self.m -= self.u
         self.u -= self.pattern.region(self.m) * self.pattern.ka
-        if self.u == 0:
+        if self.u == 0 and self.pattern.region(self.m) != 0:
+            self.passed[self.m >= self.pattern.end] -= 1
             self.rested = self._dwell()
+
+    def cycle(self, at_plus: bool) -> int:
+        """The number of the cycle that the compiled law keeps."""
+        return self.passed[at_plus] % self.pattern.cycles if self.pattern.breaker else 0
 
 
 def paper_diagram(pattern: Pattern, m: int, u: int, edges: int) -> tuple[list[int], list[int]]:
@@ -142,6 +164,9 @@ def patterns(draw: st.DrawFn, dwell: bool = False) -> Pattern:
     if dwell:
         dwells = st.one_of(st.just(0), st.integers(1, 300))
         result = replace(result, dwell_plus=draw(dwells), dwell_minus=draw(dwells))
+        if draw(st.booleans()):
+            cycles = draw(st.integers(2, 9))
+            result = replace(result, breaker=draw(st.integers(1, 400)), cycles=cycles)
     return result
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The compiled cam against rational arithmetic: every position, whatever the master does."""
 
 from fractions import Fraction
@@ -7,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from levelwind.cam import Cam, Limits, Scale, Table, check
+from levelwind.cam.table import Cam, Limits, Scale, Table, check
 from levelwind.map_table import CamInterpolation
 from rational_cam import NOTE_ROWS, STEPS_PER_EDGE_MAX, RationalCam, cams
 

@@ -1,12 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
 """P1 to P8 of doc/control-law.md on the compiled law, for any pattern and any drum motion."""
 
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from levelwind.core.ideal_screw import Screw, State
+from levelwind.core.native import Replay, derive, replay
 from levelwind.errors import RefusedError, ToolError
-from levelwind.ideal_screw import Screw, State
-from levelwind.native import Replay, derive, replay
-from levelwind.points import PARAMETERS
+from levelwind.line.points import PARAMETERS
 from reversing_screw import USTEP, Model, Pattern, motions, paper_diagram, patterns, sweep_states
 
 PROTOTYPE = Pattern(23, 1187, 8000, -8000)
@@ -17,6 +18,8 @@ EXTREMES = [
     Pattern(2, 32_767, 1, -1),  # the longest reversal that the range has room for
     Pattern(32_767, 2, 2, 0),
     Pattern(65535, 1, 2, 0, dwell_plus=3, dwell_minus=1),
+    Pattern(65535, 1, 2, 0, breaker=1, cycles=2),
+    Pattern(65535, 1, 2, 0, dwell_plus=1, breaker=199, cycles=199),
 ]
 
 
@@ -34,7 +37,9 @@ def check_equal(pattern: Pattern, m: int, u: int, runs: list[int]) -> Model:
     model = Model(pattern, m, u).run(runs)
     result, positions = compiled(pattern, m, u, runs, trace=True)
     assert positions == model.positions
-    assert (result.m, result.u) == (model.m, model.u)
+    assert (result.m, result.u, result.dwell_edges) == (model.m, model.u, model.rested)
+    assert result.cycle_plus == model.cycle(at_plus=True)
+    assert result.cycle_minus == model.cycle(at_plus=False)
     assert result.steps == sum(model.steps)
     assert result.pulses == sum(map(abs, model.steps))
     assert set(model.steps) <= {-1, 0, 1}  # P6
@@ -102,7 +107,72 @@ def test_only_net_edges_count(data: st.DataObject):
     runs = data.draw(motions(edges_max=20_000))
     rocked, _ = compiled(pattern, m, u, runs)
     straight, _ = compiled(pattern, m, u, [sum(runs)])
-    assert (rocked.m, rocked.u) == (straight.m, straight.u)
+    assert state(rocked) == state(straight)
+
+
+def state(result: Replay) -> tuple[int, ...]:
+    """All of the law's state, and the steps that led there."""
+    return (
+        result.m,
+        result.u,
+        result.dwell_edges,
+        result.cycle_plus,
+        result.cycle_minus,
+        result.steps,
+    )
+
+
+def after(pattern: Pattern, m: int, u: int, net_edges: int) -> tuple[int, ...]:
+    """The same by the model, which goes there straight; far ways by the closed form."""
+    start = State(m, u)
+    at = Screw(*vars(pattern).values()).orbit(start).after(net_edges)
+    steps = (at.m >> 16) - (start.m >> 16)
+    return (at.m, at.u, at.dwell_edges, at.cycle_plus, at.cycle_minus, steps)
+
+
+@settings(max_examples=40)
+@given(st.data())
+def test_a_million_edges_with_breaker_and_dwell_leave_what_the_net_edges_say(data: st.DataObject):
+    """Runs up to whole launches, rocking between: the closed form knows the net edges only."""
+    pattern = data.draw(patterns(dwell=True))
+    m, u = data.draw(sweep_states(pattern))
+    run = st.one_of(st.integers(-3, 3), st.integers(-5000, 5000), st.integers(-300_000, 300_000))
+    runs = data.draw(st.lists(run.filter(bool), min_size=4, max_size=200))
+    # Filled up to a million edges, here and there and back.
+    rest = 1_000_000 - sum(map(abs, runs))
+    if rest > 0:
+        back = data.draw(st.integers(0, rest))
+        runs += [edges for edges in (rest - back, -back) if edges]
+    result, _ = compiled(pattern, m, u, runs)
+    assert result.edges >= 1_000_000
+    assert state(result) == after(pattern, m, u, sum(runs))
+
+
+def test_the_breaker_lengthens_the_dwell_of_each_cycle():
+    """0 to 0.2 drum turns in 8 steps: the dwell of every far point, in both directions."""
+    pattern = Pattern(23, 1187, 8000, -8000, breaker=576, cycles=8)
+    moving = 81_558 - 4 * 1187  # edges of the sweeps in a period of the pattern without it
+    model = Model(pattern, pattern.begin, pattern.ks)
+    dwells: dict[bool, list[int]] = {True: [], False: []}
+    for dd in (1, -1):
+        rested = 0
+        for _ in range(10 * 82_200):
+            before = model.u
+            model.run([dd])
+            rested += before == 0 and model.u == 0
+            if before == 0 and model.u != 0:
+                dwells[model.m >= pattern.end].append(rested)
+                rested = 0
+        model.positions.clear()
+        model.steps.clear()
+    up_and_down = [0, 144, 288, 432, 576, 432, 288, 144]
+    assert dwells[True][:8] == up_and_down == dwells[False][:8]
+    for side in dwells.values():
+        half = len(side) // 2
+        assert side[half:][: half - 1] == side[:half][::-1][: half - 1]
+    period = Screw(*vars(pattern).values()).orbit(State(pattern.begin, pattern.ks)).period_edges
+    assert abs(period - 8 * (moving + 4 * 1187) - 2 * sum(up_and_down)) <= 8 * 2
+    check_equal(pattern, pattern.begin, pattern.ks, [200_000, -100_000])
 
 
 @settings(max_examples=100)
@@ -212,6 +282,8 @@ def parameter_sets(draw: st.DrawFn) -> dict[str, int]:
         "centre_position_um": centre_um,
         "travel_um": 2 * half_um + beyond_plus_um + beyond_minus_um,
         "dwell_plus_millirev": draw(st.sampled_from((0, 0, 15, 500))),
+        "breaker_millirev": draw(st.sampled_from((0, 0, 200))),
+        "breaker_cycles": draw(st.sampled_from((0, 2, 9))),
     }
     if draw(st.booleans()):
         nr = draw(st.integers(1, 900))
@@ -241,6 +313,8 @@ def test_p8_whatever_parameters_are_accepted_the_law_can_run(
         derived.reversal_minus_usteps,
         derived.dwell_plus_edges,
         derived.dwell_minus_edges,
+        derived.breaker_edges,
+        derived.breaker_cycles,
     )
     assert derived.ks == pattern.ks <= 65535
     assert pattern.plus - pattern.minus >= 2

@@ -1,10 +1,13 @@
+# SPDX-License-Identifier: Apache-2.0
 """A controller that is a dictionary of registers."""
 
 from types import SimpleNamespace
 from typing import Any
 
+from levelwind.line.points import encode
+from levelwind.line.port import Line
+from levelwind.line.rtu import Heard
 from levelwind.map_table import POINTS, Reason, Result
-from levelwind.points import encode
 from pymodbus.exceptions import ModbusIOException
 
 OVERFLOW = 100_001  # a pitch that the fake refuses
@@ -13,12 +16,13 @@ OVERFLOW = 100_001  # a pitch that the fake refuses
 class FakeClient:
     """Registers in a dictionary; refuses one value; runs commands with a result to choose."""
 
-    def __init__(self, port: str, **options: Any) -> None:
-        self.connected = True
+    def __init__(self, line: Line) -> None:
+        self.line_echoes = False
+        self.heard = Heard.NOTHING
+        self.other_units: set[int] = set()
         self.registers: dict[tuple[str, int], int] = {}
         self.writes: list[tuple[int, list[int]]] = []
         self.silent_reads = 0
-        self.foreign_answers = 0  # to another master's requests
         self.result = Result.DONE
         self.reason = Reason.NONE
 
@@ -26,7 +30,7 @@ class FakeClient:
         return True
 
     def close(self) -> None:
-        self.connected = False
+        pass
 
     def put(self, name: str, value: int) -> None:
         point = POINTS[name]
@@ -38,14 +42,6 @@ class FakeClient:
             self.silent_reads -= 1
             raise ModbusIOException("no answer")
         function = 4 if space == "input" else 3
-        if self.foreign_answers:
-            self.foreign_answers -= 1
-            foreign = self.foreign_answers % 2
-            return SimpleNamespace(
-                function_code=function ^ 7 if foreign else function,
-                registers=[1] * (count if foreign else count + 1),
-                isError=lambda: False,
-            )
         words = [self.registers.get((space, address + i), 0) for i in range(count)]
         return SimpleNamespace(function_code=function, registers=words, isError=lambda: False)
 

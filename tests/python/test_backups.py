@@ -1,14 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
 """Backup files: complete, checked, and readable by people."""
 
 from pathlib import Path
 
 import pytest
 import yaml
-from levelwind import backups
 from levelwind.errors import ToolError
+from levelwind.files import backups
+from levelwind.line.points import PARAMETERS
 from levelwind.map_table import MAP_VERSION
-from levelwind.output import json_value
-from levelwind.points import PARAMETERS
+from levelwind.show.output import json_value
 
 DEFAULTS = {p.name: json_value(p, p.default) for p in PARAMETERS}
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cam tables on the laptop: files, check, picture, replay, and the level-wind law as a table."""
 
 import json
@@ -5,11 +6,13 @@ import re
 from pathlib import Path
 
 import pytest
-from levelwind import cam_files, cam_levelwind, cam_report
-from levelwind.cam import Cam, CamRefusedError, Limits, Scale, Table
+from levelwind.cam import levelwind as cam_levelwind
+from levelwind.cam import report as cam_report
+from levelwind.cam.table import Cam, CamRefusedError, Limits, Scale, Table
 from levelwind.cli import app
+from levelwind.core.ideal_screw import Screw, State
 from levelwind.errors import ToolError
-from levelwind.ideal_screw import Screw, State
+from levelwind.files import cam_files
 from levelwind.map_table import CamInterpolation, Reason
 from typer.testing import CliRunner
 
@@ -78,12 +81,12 @@ def test_forms_of_text(tmp_path: Path, text: str):
     [
         ("", "no rows"),
         ("0 0\n10\n", "line 2: '10' has 1 columns, limit 2"),
-        ("0\n", "line 1: '0' has 1 columns, limit 3"),
+        ("0\n", "line 1: '0' has 1 columns, limit 2"),
         ("0 0\n1 10 5\n", "line 2: '1 10 5' has 3 columns, limit 2"),
-        ("0 0\nten 5\n", "line 2: 'ten 5': master and slave must be whole"),
-        ("0 0\n10 5.5\n", "whole numbers"),
-        ("0 0\n10 nan\n", "whole numbers"),
-        ("0 0\n10 inf\n", "whole numbers"),
+        ("0 0\nten 5\n", "line 2, column 1: 'ten' is no whole number"),
+        ("0 0\n10 5.5\n", "whole number"),
+        ("0 0\n10 nan\n", "whole number"),
+        ("0 0\n10 inf\n", "whole number"),
     ],
 )
 def test_a_wrong_file_is_named_with_its_line(tmp_path: Path, text: str, message: str):
@@ -98,8 +101,8 @@ def test_files_that_are_none(tmp_path: Path):
         cam_files.read(tmp_path / "nothing.txt")
     for name in ("table.txt", "table.xlsx"):
         path = tmp_path / name
-        path.write_bytes(b"\xff\xfe\x00\x80")
-        with pytest.raises(ToolError, match=r"is no (text|XLSX workbook)"):
+        path.write_bytes(b"\xff\x00\x80")
+        with pytest.raises(ToolError, match=r"is no (text|XLSX workbook).*save it as CSV UTF-8"):
             cam_files.read(path)
 
 

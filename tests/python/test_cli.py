@@ -1,14 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command line: usage, messages, exit status, and what needs no controller."""
 
 import json
 from pathlib import Path
 
 import pytest
-from levelwind import simulator
 from levelwind.cli import app
-from levelwind.device import Device
-from levelwind.ideal_screw import USTEP, Screw, State
+from levelwind.core.ideal_screw import USTEP, Screw, State
+from levelwind.line.device import Device
 from levelwind.map_table import POINTS
+from levelwind.simulate import simulator
 from typer.testing import CliRunner
 
 PROTOTYPE = ["--ka", "23", "--nr", "1187", "--lplus", "8000", "--lminus", "-8000"]
@@ -34,7 +35,7 @@ def test_every_command_has_help(command: list[str]):
         ["status", "--line", "7E1"],
         ["jog", "plus", "--for", "0"],
         ["replay", "--ka", "1"],
-        ["plan", "--ratio", "4"],
+        ["plan", "--reversal-mm", "4"],
     ],
 )
 def test_wrong_usage_is_status_2(arguments: list[str]):
@@ -115,10 +116,6 @@ def test_plan_sets_what_was_given_also_where_it_is_the_factory_value():
     )
 
 
-def test_plan_shows_a_ratio_as_example_for_a_ratio():
-    assert "as in 4/1" in levelwind("plan", "--ratio", "4").stderr
-
-
 def test_demo_into_a_file_is_one_line(tmp_path: Path):
     path = tmp_path / "file"
     path.touch()
@@ -134,7 +131,10 @@ def test_demo_into_a_file_is_one_line(tmp_path: Path):
     [
         (["--pitch-mm", "50"], "more than one step per encoder edge"),
         (["--pitch-mm", "500"], "pitch_um=500000 is outside its limits"),
-        (["--reversal-mm", "70/-80"], "switch_plus_um = 78400 um, limit 70000 um"),
+        (
+            ["--reversal-mm", "70/-80", "--switch-mm", "78.4/-78.4"],
+            "switch_plus_um = 78400 um, must be less than 70000 um",
+        ),
         (["--set", "mode=track"], "mode is no parameter"),
     ],
 )

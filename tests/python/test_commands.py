@@ -1,13 +1,18 @@
+# SPDX-License-Identifier: Apache-2.0
 """Commands for the operator, on registers in a dictionary."""
 
 from pathlib import Path
 
 import pytest
-from levelwind import device as device_module
-from levelwind import launches, motion, recorder
 from levelwind.cli import app
-from levelwind.map_table import POINTS, Flag, State
-from levelwind.status import Travel, render
+from levelwind.line import device as device_module
+from levelwind.line import motion
+from levelwind.line.live import Travel
+from levelwind.line.port import Line
+from levelwind.map_table import POINTS, Fault, Flag, State
+from levelwind.show import recorder
+from levelwind.show.status import render
+from levelwind.simulate import launches
 from python.fake_client import FakeClient
 from typer.testing import CliRunner
 
@@ -19,8 +24,8 @@ class Controller(FakeClient):
     jogs = 0
     looks_until_rest = 3
 
-    def __init__(self, port: str, **options: object) -> None:
-        super().__init__(port, **options)
+    def __init__(self, line: Line) -> None:
+        super().__init__(line)
         for name, value in self.values.items():
             self.put(name, value)
 
@@ -45,8 +50,7 @@ class Controller(FakeClient):
 
 @pytest.fixture(autouse=True)
 def controller(monkeypatch: pytest.MonkeyPatch) -> type[Controller]:
-    monkeypatch.setattr(device_module, "ModbusSerialClient", Controller)
-    monkeypatch.setattr(device_module, "check_port", lambda port: None)
+    monkeypatch.setattr(device_module, "RtuClient", Controller)
     monkeypatch.setattr(Controller, "values", {})
     monkeypatch.setattr(motion, "JOG_REWRITE_S", 0)
     monkeypatch.setattr(motion, "REST_POLL_S", 0)
@@ -111,13 +115,46 @@ def test_launch_warns_if_the_carriage_will_not_follow(
     controller.values["state"] = state
     monkeypatch.setattr(launches, "read_gearing", lambda *_: None)
     monkeypatch.setattr(launches, "upload", lambda *_: None)
-    monkeypatch.setattr("levelwind.profiles.read", lambda *_: [])
-    end = dict.fromkeys(POINTS, 0)
+    monkeypatch.setattr("levelwind.files.profiles.read", lambda *_: [])
+    end = dict.fromkeys(POINTS, 0) | {"state": state}
     monkeypatch.setattr(launches, "play", lambda *_: launches.Launch(end, end))
     result = levelwind("launch", str(tmp_path), "--json")
-    assert result.exit_code == 0, result.output
-    assert len(result.stderr.splitlines()) == lines
+    assert result.exit_code == bool(lines), result.output
+    assert len(result.stderr.splitlines()) == 2 * lines
     assert ("will not follow" in result.stderr) == bool(lines)
+
+
+NO_LOOK = {"permit": "kept", "state": State.TRACKING}
+
+
+@pytest.mark.parametrize(
+    ("end", "told"),
+    [
+        ({}, ""),
+        ({"permit": "never given", "state": State.OFF}, "launch permit never given"),
+        ({"permit": "lost"}, "launch permit lost"),
+        ({"state": State.FAULT, "fault": Fault.OVERSPEED}, "state fault (overspeed)"),
+        ({"flags": 1 << Flag.LOS}, Flag.LOS.text),
+        ({"flags_2": 1 << Flag.ROPE_LAID_STANDING - 32}, Flag.ROPE_LAID_STANDING.text),
+    ],
+)
+def test_a_launch_that_was_not_in_order_ends_with_exit_status_1(
+    controller: type[Controller],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    end: dict[str, object],
+    told: str,
+):
+    controller.values["state"] = State.TRACKING
+    monkeypatch.setattr(launches, "read_gearing", lambda *_: None)
+    monkeypatch.setattr(launches, "upload", lambda *_: None)
+    monkeypatch.setattr("levelwind.files.profiles.read", lambda *_: [])
+    seen = dict.fromkeys(POINTS, 0) | NO_LOOK | end
+    permit = seen.pop("permit")
+    monkeypatch.setattr(launches, "play", lambda *_: launches.Launch(seen, seen, permit=permit))
+    result = levelwind("launch", str(tmp_path))
+    assert result.exit_code == bool(told), result.output
+    assert told in result.stderr
 
 
 @pytest.mark.parametrize("bit", [Flag.HELD, Flag.DIRTY])
@@ -133,6 +170,15 @@ def status_rows(**values: int) -> dict[str, str]:
     rows = render(status, Travel(-1, -1, 1, 1)).renderable.renderables[2]
     headings, texts = (list(column.cells) for column in rows.columns)
     return {str(heading): str(text) for heading, text in zip(headings, texts, strict=True)}
+
+
+def test_where_the_rope_goes_on_is_shown_until_it_is_followed() -> None:
+    assert "Rope goes on" not in status_rows()
+    there = {"resume_position_um": -12_340, "resume_direction": -1}
+    assert "-12.34 mm, hauling in toward minus; gone to" in status_rows(**there)["Rope goes on"]
+    doubt = {"flags_2": 1 << (Flag.RESUME_DOUBTFUL - 32)}
+    assert "DOUBTFUL" in status_rows(**there, **doubt)["Rope goes on"]
+    assert "Rope goes on" not in status_rows(**there, state=State.TRACKING)
 
 
 def test_what_the_firmware_measures_is_shown_where_it_is_measured() -> None:

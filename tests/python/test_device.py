@@ -1,19 +1,21 @@
+# SPDX-License-Identifier: Apache-2.0
 """The connection: one request where possible, all or nothing, refusals in words."""
 
 from typing import Any
 
 import pytest
-from levelwind import device as device_module
-from levelwind.device import Device, Line
 from levelwind.errors import RefusedError, ToolError
+from levelwind.line import device as device_module
+from levelwind.line import port
+from levelwind.line.device import Device
+from levelwind.line.port import Line
 from levelwind.map_table import POINTS, Command, Reason, Result
 from python.fake_client import OVERFLOW, FakeClient
 
 
 @pytest.fixture
 def device(monkeypatch: pytest.MonkeyPatch) -> Device:
-    monkeypatch.setattr(device_module, "ModbusSerialClient", FakeClient)
-    monkeypatch.setattr(device_module, "check_port", lambda port: None)
+    monkeypatch.setattr(device_module, "RtuClient", FakeClient)
     return Device(Line("/dev/null"))
 
 
@@ -38,8 +40,14 @@ def test_a_refused_write_leaves_nothing_changed(device: Device):
         "encoder_pulses_per_rev": 360,
         "screw_lead_um": 20_000,
     }
-    assert "The value is outside the limits" in str(refusal.value)
-    assert "pitch_um = 100001 um, limit 100000 um (holding register 114)" in str(refusal.value)
+    # For programs.
+    parts = refusal.value.reason, refusal.value.register, refusal.value.value, refusal.value.limit
+    assert parts == (Reason.OUT_OF_RANGE, "pitch_um", OVERFLOW, 100_000)
+    # For people, without a word of the protocol.
+    assert str(refusal.value).startswith("The value is outside the limits")
+    assert "pitch_um = 100001 um, must be at most 100000 um (holding register 114)" in str(
+        refusal.value
+    )
 
 
 def test_a_lost_read_is_repeated_and_silence_is_told(device: Device):
@@ -49,22 +57,6 @@ def test_a_lost_read_is_repeated_and_silence_is_told(device: Device):
     with pytest.raises(ToolError, match=r"(?s)No answer from .*unit 1.*wiring") as silence:
         device.value("state")
     assert len(str(silence.value).splitlines()) == 2
-
-
-def test_an_answer_to_somebody_else_is_not_taken(device: Device, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(device_module, "SETTLE_S", 0)
-    device._client.foreign_answers = 2  # one of another length, one of another function
-    assert device.value("pitch_um") == 0
-    device._client.foreign_answers = 3
-    with pytest.raises(ToolError, match="second master"):
-        device.value("pitch_um")
-
-
-def test_a_vanished_port_is_told(device: Device):
-    device._client.silent_reads = 1
-    device._client.connected = False
-    with pytest.raises(ToolError, match="gone away"):
-        device.value("state")
 
 
 def test_a_command_that_is_done_returns(device: Device):
@@ -81,7 +73,7 @@ def test_a_refused_command_says_why(device: Device):
     with pytest.raises(RefusedError) as refusal:
         device.command(Command.APPLY)
     assert "apply refused: reversal_minus must lie" in str(refusal.value)
-    assert "reversal_minus_um = 90000 um, limit 80000 um" in str(refusal.value)
+    assert "reversal_minus_um = 90000 um, must be at most 80000 um" in str(refusal.value)
 
 
 def test_a_command_that_does_not_end_is_given_up(device: Device):
@@ -96,4 +88,4 @@ def test_a_command_that_does_not_end_is_given_up(device: Device):
 def test_a_pseudo_terminal_is_opened_without_parity(tmp_path: Any, target: str):
     link = tmp_path / "port"
     link.symlink_to(target)
-    assert device_module.parity(Line(str(link))) == ("N" if "pts" in target else "E")
+    assert port.parity(Line(str(link))) == ("N" if "pts" in target else "E")

@@ -1,9 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """The closed form of the reversing screw against the law itself, edge by edge."""
 
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from levelwind.ideal_screw import USTEP, Screw, State
+from levelwind.core.ideal_screw import USTEP, Screw, State
 
 PROTOTYPE = Screw(23, 1187, 8000, -8000)
 
@@ -11,17 +12,26 @@ PROTOTYPE = Screw(23, 1187, 8000, -8000)
 def law_forward(screw: Screw, state: State) -> State:
     """One forward edge, as doc/control-law.md writes it; a dwell holds the far point."""
     m, u, rested = state.m, state.u, state.dwell_edges
+    cycles = {"plus": state.cycle_plus, "minus": state.cycle_minus}
     if u == 0:
-        plus = m >= screw.sweep_end
-        dwell = screw.dwell_plus_edges if plus else screw.dwell_minus_edges
+        side = "plus" if m >= screw.sweep_end else "minus"
+        dwell = screw.dwell_plus_edges if side == "plus" else screw.dwell_minus_edges
+        if screw.breaker_edges:
+            k = cycles[side]
+            half = screw.breaker_cycles // 2
+            down = screw.breaker_cycles - half
+            height = k if k <= half else half if k <= down else screw.breaker_cycles - k
+            dwell += screw.breaker_edges * height // half
         if rested < dwell:
-            return State(m, u, rested + 1)
+            return State(m, u, rested + 1, *cycles.values())
+        if screw.breaker_edges:
+            cycles[side] = (cycles[side] + 1) % screw.breaker_cycles
     pos = m >> 16
     if pos >= screw.reversal_plus_usteps:
         u -= screw.ka
     elif pos <= screw.reversal_minus_usteps:
         u += screw.ka
-    return State(m + u, u)
+    return State(m + u, u, 0, *cycles.values())
 
 
 @st.composite
@@ -36,6 +46,8 @@ def screws(draw: st.DrawFn) -> Screw:
         minus,
         draw(st.sampled_from([0, 1, 7])),
         draw(st.sampled_from([0, 2, 5])),
+        draw(st.sampled_from([0, 1, 40])),
+        draw(st.integers(2, 7)),
     )
 
 
@@ -73,6 +85,11 @@ def test_the_prototype_after_a_billion_edges():
 def test_a_state_off_the_orbit_is_refused(state: State):
     with pytest.raises(ValueError, match="not on an orbit"):
         PROTOTYPE.orbit(state)
+
+
+def test_a_breaker_needs_two_cycles():
+    with pytest.raises(ValueError, match="at least 2"):
+        Screw(23, 1187, 8000, -8000, breaker_edges=5, breaker_cycles=1)
 
 
 def test_a_screw_that_asks_for_two_steps_an_edge_is_refused():

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values of the map: names, limits, registers."""
 
 import re
@@ -7,8 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from levelwind.errors import ToolError
-from levelwind.map_table import POINTS, Point, Reason
-from levelwind.points import (
+from levelwind.line.points import (
     NO_ADDRESS,
     PARAMETERS,
     at_address,
@@ -22,8 +22,11 @@ from levelwind.points import (
     refusal_text,
     runs,
 )
+from levelwind.map_table import POINTS, Fault, Point, Reason
 
-PAGE = Path(__file__).parents[2] / "doc" / "integration.md"
+DOC = Path(__file__).parents[2] / "doc"
+PAGE = DOC / "integration.md"
+FAULTS = DOC / "field-setup.md"
 SPACES = {
     "input registers": "input",
     "holding registers": "holding",
@@ -106,10 +109,23 @@ def test_the_second_register_of_a_value_belongs_to_it():
 
 def test_refusals_name_value_and_limit_only_where_one_is_to_blame():
     broken = refusal_text(Reason.OUT_OF_RANGE, 114, 9, 10)
-    assert broken.endswith("pitch_um = 9 um, limit 10 um (holding register 114)")
+    assert broken.endswith("pitch_um = 9 um, must be at least 10 um (holding register 114)")
+    too_much = refusal_text(Reason.OUT_OF_RANGE, 114, 11, 10)
+    assert too_much.endswith("pitch_um = 11 um, must be at most 10 um (holding register 114)")
+    inside = refusal_text(Reason.SWITCH_MINUS_OUTSIDE, 130, -9, -9)
+    assert "switch_minus_um = -9 um, must be more than -9 um" in inside
     assert refusal_text(Reason.BUSY_TRACKING, 114, 9, 0) == Reason.BUSY_TRACKING.text
     assert refusal_text(Reason.OUT_OF_RANGE, NO_ADDRESS, 0, 0) == Reason.OUT_OF_RANGE.text
     assert "newer than this tool" in refusal_text(999, NO_ADDRESS, 0, 0)
+
+
+def test_the_builders_page_says_of_every_fault_what_to_look_at():
+    table = re.search(r"^\| fault \|.*?(?=\n\n)", FAULTS.read_text(), re.M | re.S)
+    assert table
+    told = [name for row in table[0].splitlines()[2:] for name in row.split("|")[1].split(",")]
+    assert sorted(name.strip() for name in told) == sorted(
+        fault.name.lower() for fault in Fault if fault != Fault.NONE
+    )
 
 
 @pytest.mark.parametrize("title", SPACES)

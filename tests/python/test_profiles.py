@@ -1,10 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reading speed profiles and converting them to drum speed."""
 
 from pathlib import Path
 
 import pytest
 from levelwind.errors import ToolError
-from levelwind.profiles import Gearing, read, thin
+from levelwind.files.profiles import Gearing, read, thin
 
 GEARING = Gearing(
     rope_per_drum_rev_um=2_400_000,
@@ -44,10 +45,10 @@ def test_times_begin_at_zero_and_share_no_millisecond(tmp_path: Path):
     [
         ("time_s,speed\n0,0\n", "names time_s, speed"),
         ("time_s,drum_rpm,motor_rpm\n0,0,0\n", "one of"),
-        ("time_s,drum_rpm\n0,0\n1,fast\n", r"profile\.csv:3: drum_rpm is 'fast'"),
-        ("time_s,drum_rpm\n0,0\n1\n", r"profile\.csv:3: drum_rpm is None"),
-        ("time_s,drum_rpm\n0,0\n1,nan\n", "drum_rpm is 'nan'"),
-        ("time_s,drum_rpm\n2,0\n1,0\n", "time 1 s does not come after 2 s"),
+        ("time_s,drum_rpm\n0,0\n1,fast\n", r"profile\.csv, line 3, column 2: 'fast' is no number"),
+        ("time_s,drum_rpm\n0,0\n1\n", r"profile\.csv, line 3, column 2: the cell is empty"),
+        ("time_s,drum_rpm\n0,0\n1,nan\n", "'nan' is no number"),
+        ("time_s,drum_rpm\n2,0\n1,0\n", "line 3, column 1: time 1.0 s does not come after 2.0"),
         ("time_s,drum_rpm\n0,0\n1,3001\n", "3001 drum revolutions a minute, limit 3000"),
         ("time_s,drum_rpm\n0,0\n", "at least two points"),
         ("", "names nothing"),

@@ -1,11 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
 """Setup scripts are checked as a whole before anything is sent."""
 
 from pathlib import Path
 from typing import Any
 
 import pytest
-from levelwind import script
 from levelwind.errors import ToolError
+from levelwind.files import script
 from levelwind.map_table import Mode
 
 SETUP = Path(__file__).parents[2] / "profiles" / "field_setup.yaml"
@@ -77,7 +78,7 @@ def test_steps_reach_the_device_in_order(tmp_path: Path):
         ("- wait: {until: {los: false}, timeout_s: -1}\n", "timeout_s is a number of seconds"),
         ("- jog: {direction: up, seconds: 1}\n", "direction is plus or minus"),
         ("- jog: {direction: plus}\n", "seconds is a number"),
-        ("- [\n", r"script\.yaml:\d"),
+        ("- [\n", r"script\.yaml, line 2: expected"),
     ],
 )
 def test_mistakes_are_named_before_anything_is_sent(tmp_path: Path, text: str, message: str):

@@ -1,11 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
 """Judging a trace against the ideal screw."""
 
 from pathlib import Path
 
 import pytest
-from levelwind import trace
+from levelwind.core.ideal_screw import Screw, State
 from levelwind.errors import ToolError
-from levelwind.ideal_screw import Screw, State
+from levelwind.simulate import trace
 
 SCREW = Screw(23, 1187, 8000, -8000)
 HEADER = "time_ms,state,net_edges,pattern_edges,m,u,steps,carriage_um,drum_millirpm,flags\n"

@@ -1,10 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
 """The carriage follows a cam table: upload, start, motion, change of tables."""
 
 import struct
 from collections.abc import Iterator
 
 import pytest
-from levelwind.cam import Scale, Table, from_words, words
+from levelwind.cam.table import Scale, Table, from_words, words
 from levelwind.map_table import (
     BenchCommand,
     CamBankState,

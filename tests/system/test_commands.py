@@ -1,10 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every command in every state: taken, or refused with a reason; no permit without an index."""
 
 from collections.abc import Callable
 
 import pytest
 from command_rules import DOCUMENT, STATES, WRITES, document, expected_refusal
-from levelwind.map_table import Command, Mode, State
+from levelwind.map_table import BenchCommand, Command, Mode, State
 from world import RequestRefusedError, World
 
 
@@ -55,6 +56,16 @@ def jogging() -> World:
     world = World()
     world.write(jog=1)
     world.run(0.2)
+    return world
+
+
+def reacquiring() -> World:
+    """After a restart in a launch, the turning drum is taken up."""
+    world = turning()
+    world.write(bench_command=BenchCommand.RESTART)
+    world.run(0.8)
+    world.write(command=Command.REACQUIRE)
+    world.run(0.05)
     return world
 
 
@@ -111,6 +122,7 @@ MAKE: dict[str, Callable[[], World]] = {
     "centred": centred,
     "centred_turning": with_the_drum_turning(centred),
     "jogging": jogging,
+    "reacquiring_turning": reacquiring,
     "off": off,
     "off_turning": with_the_drum_turning(off),
     "fault": overtravelled,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every address of the four spaces, by every function that reaches it, against the map."""
 
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Indexing from anywhere, and with a broken machine."""
 
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The write lock of the whole controller: what it guards, and what it must never guard."""
 
 import pytest
@@ -60,6 +61,15 @@ def test_every_parameter_is_guarded(world: World, point) -> None:
     assert world.value("last_error_reason") == Reason.LOCKED
 
 
+# Not guarded, but refused for a reason of their own where the carriage does not follow.
+NOT_NOW = {
+    Command.SET_ROPE: Reason.ROPE_NOT_DESCRIBED,
+    Command.TRIM_EARLY: Reason.TRIM_NOT_FOLLOWING,
+    Command.TRIM_LATE: Reason.TRIM_NOT_FOLLOWING,
+    Command.REACQUIRE: Reason.DRUM_AT_REST,
+}
+
+
 @pytest.mark.parametrize("command", [c for c in Command if c != Command.NONE])
 def test_commands(world: World, command: Command) -> None:
     """Each command, locked and then with the lock open."""
@@ -71,6 +81,8 @@ def test_commands(world: World, command: Command) -> None:
         world.write(unlock=CODE)
         assert refusal(world, command=command) is None
         sequence += 1
+    elif command in NOT_NOW:
+        assert refusal(world, command=command) == (BUSY, NOT_NOW[command])
     else:
         assert refusal(world, command=command) is None
     assert world.value("command_sequence") == sequence + 1

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What `./dev longrun` does for a day and a billion edges, for some minutes and millions here."""
 
 import pytest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every state of every input at power-up: nothing moves, nothing is permitted, indexing tells."""
 
 import itertools
@@ -98,12 +99,18 @@ def expected_faults(
         ):
             if no_closed == nc_closed:
                 return {fault}
-    active = [actuated(wiring, *contacts[side]) or overtravel[side] for side in (0, 1)]
+    limits = [actuated(wiring, *contacts[side]) for side in (0, 1)]
+    active = [limits[side] or overtravel[side] for side in (0, 1)]
+    # An overtravel switch without its limit switch: most likely its wire is broken.
+    alone = [overtravel[side] and not limits[side] for side in (0, 1)]
+    named = Fault.OVERTRAVEL_PLUS if alone[0] else Fault.OVERTRAVEL_MINUS
     if all(active):
-        return {Fault.BOTH_SWITCHES_ACTIVE}
+        return {named if alone[0] != alone[1] else Fault.BOTH_SWITCHES_ACTIVE}
     # A normally closed contact that is shorted never opens: the carriage runs past its switch.
     blind = wiring == SwitchContacts.SINGLE_NC and (True, True) in contacts
     past = {Fault.INDEX_SPAN, Fault.OVERTRAVEL_PLUS, Fault.OVERTRAVEL_MINUS} if blind else set()
+    if any(alone):
+        return {named} | past
     if any(active):  # it stays so however far the carriage backs off
         return {Fault.BOTH_SWITCHES_ACTIVE, Fault.BACK_OFF_NO_RELEASE} | past
     return past

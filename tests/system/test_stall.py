@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The stepper stalls in a launch: noticed, recovered from, and told until indexed again."""
 
 import pytest

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """STOP, and going on after it: from wherever the carriage was left, the slope comes out right."""
 
 import pytest

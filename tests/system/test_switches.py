@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Limit switches that bounce, and limit switches with broken wires."""
 
 import pytest
@@ -180,3 +181,36 @@ def test_a_reversal_trimmed_close_to_its_switch_waits_for_the_switch_tolerance(
     assert world.value("switch_minus_triggers") > 2
     assert ("los1_plus" in world.flags) == stuck
     assert not world.flags & {"los1_minus", "los2_plus", "los2_minus"}
+
+
+# ---- against the known position -----------------------------------------------------------------
+
+
+@pytest.mark.parametrize("index_switch", list(Side), ids=lambda s: s.label)
+def test_a_broken_wire_of_a_normally_closed_contact_takes_the_permit_at_rest(index_switch: Side):
+    """Parked on one switch, the other reads as actuated: both cannot be."""
+    world = World(switch_contacts=SwitchContacts.SINGLE_NC, index_switch=index_switch).index()
+    assert world.permit
+    world.write(**{f"bench_switch_{index_switch.label}_fault": SwitchFault.NC_WIRE_BROKEN})
+    world.run_until(lambda: "switch_implausible" in world.flags, 0.1)
+    assert world.value("launch_inhibit") == 1 << LaunchInhibit.SWITCH_IMPLAUSIBLE
+    world.write(**{f"bench_switch_{index_switch.label}_fault": SwitchFault.NONE})
+    world.run_until(lambda: world.permit, 0.1)
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("fault", [SwitchFault.STUCK_ACTUATED, SwitchFault.STUCK_RELEASED])
+def test_a_stuck_pair_takes_the_permit_before_the_drum_turns(side: str, fault: SwitchFault):
+    world = World().index()  # parked on the minus switch
+    world.write(**{f"bench_switch_{side}_fault": fault})
+    world.run(0.1)
+    wrong = (side == "plus") == (fault == SwitchFault.STUCK_ACTUATED)
+    assert world.permit != wrong
+    assert ("switch_implausible" in world.flags) == wrong
+
+
+def test_a_single_contact_that_bounces_for_long_stops_the_indexing():
+    world = World(switch_contacts=SwitchContacts.SINGLE_NC)
+    world.write(bench_bounce_ms=100)
+    assert world.index_faulted() in (Fault.WIRING_PLUS, Fault.WIRING_MINUS)
+    assert abs(world.truth.carriage_um) < 82_000

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * Cam tables for a device on the rig's pins: uploads by FC21, as a master makes them.
@@ -46,7 +47,7 @@ static inline uint8_t write_words(uint16_t file, const struct lw_cam_bank *bank,
 	size_t length = 9;
 
 	for (unsigned int i = first; i < first + count; i++) {
-		const uint16_t word = lw_cam_bank_get(bank, i);
+		const uint16_t word = i < LW_CAM_WORDS ? lw_cam_bank_get(bank, i) : 0;
 
 		request[length++] = (uint8_t)(word >> 8);
 		request[length++] = (uint8_t)word;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A whole device on the rig's pins, and its registers.
@@ -10,7 +11,7 @@
 #include "rig.h"
 
 static struct lw_refusal why;
-static const struct lw_device_config config = {.host = LW_HOST_SIMULATOR, .store = &rig.store};
+static struct lw_device_config config = {.host = LW_HOST_SIMULATOR, .store = &rig.store};
 
 /** Power up with this record in the first slot of the parameters. */
 static inline void power_up(const uint8_t *record, size_t length)
@@ -33,7 +34,9 @@ static inline const struct lw_status *status(void)
 
 static inline bool flag(enum lw_flag bit)
 {
-	return status()->flags >> bit & 1;
+	const struct lw_status *now = status();
+
+	return (bit < 32 ? now->flags >> bit : now->flags_2 >> (bit - 32)) & 1;
 }
 
 static inline int write_register(uint16_t address, int32_t value)

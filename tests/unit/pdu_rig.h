@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A slave's Modbus functions over the small bank and two small files. Requests and responses live
@@ -10,7 +11,7 @@
 
 #include <unity.h>
 
-#include "lw/pdu.h"
+#include "lw/modbus/pdu.h"
 #include "small_bank.h"
 
 /** Files 1 (300 records) and 7 (read only, 4 records). */
@@ -106,6 +107,7 @@ static inline void ask(const uint8_t *request, size_t length)
 	uint8_t *exact_response = malloc(LW_PDU_MAX);
 
 	memcpy(exact_request, request, length);
+	memset(exact_response, 0xA5, LW_PDU_MAX); /* of the answer before */
 	response_length = lw_pdu_handle(&pdu, exact_request, length, exact_response);
 	TEST_ASSERT_LESS_OR_EQUAL(LW_PDU_MAX, response_length);
 	memcpy(response, exact_response, response_length);

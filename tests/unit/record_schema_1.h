@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * A record of schema 1 as the firmware of that time wrote it: factory values but for pitch_um
  * 11000, reversal_minus_um -79000, rope_per_drum_rev_um 2000000, unit_id 17, baud_rate 115200,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A controller with its pins driven by hand: an ideal carriage that follows every step, change-over
@@ -11,7 +12,8 @@
 
 #include <unity.h>
 
-#include "lw/device.h"
+#include "cases.h"
+#include "lw/device/device.h"
 
 /** What a limit switch of the rig does. */
 enum rig_switch {
@@ -104,7 +106,7 @@ static inline void rig_set_switch(int side, enum rig_switch what)
 static inline void rig_place(int32_t usteps)
 {
 	rig.carriage_usteps = usteps;
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		const bool before = rig.actuated[side];
 
 		rig_move_switch(side);
@@ -163,6 +165,15 @@ static inline void rig_tick(void)
 	} else {
 		lw_controller_tick(rig.controller, rig.now_us);
 	}
+	switch (rig.controller->state) {
+	case LW_STATE_READY:
+	case LW_STATE_CENTRED:
+	case LW_STATE_TRACKING:
+		TEST_ASSERT_TRUE_MESSAGE(rig.controller->indexed, "a state that needs an index");
+		break;
+	default:
+		break;
+	}
 }
 
 static inline void rig_ticks(int count)
@@ -212,7 +223,7 @@ static inline struct lw_inputs rig_inputs(void)
 {
 	struct lw_inputs inputs = {0};
 
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		rig_move_switch(side);
 		inputs.limit[side].no_closed = rig_contact_no(side);
 		inputs.limit[side].nc_closed = rig_contact_nc(side);
@@ -294,7 +305,7 @@ static inline void rig_rest(void)
 {
 	rig.drum_edges_per_s = 0;
 	rig_ticks(300);
-	TEST_ASSERT_TRUE(rig.controller->drum_at_rest);
+	TEST_ASSERT_TRUE(rig.controller->speed.at_rest);
 }
 
 #endif /* RIG_H */

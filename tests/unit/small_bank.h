@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A small register bank for the tests of the Modbus layers, and an owner that records what is
@@ -9,7 +10,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "lw/bank.h"
+#include "lw/modbus/bank.h"
 #include "lw/map.h"
 
 #define ARRAY_SIZE(array) ((uint16_t)(sizeof(array) / sizeof((array)[0])))
@@ -241,7 +242,8 @@ static inline void small_init(void)
 		*section++ = SMALL_SECTION(LW_SPACE_DISCRETE, small_discretes, (uint16_t)(32 * i),
 					   &small.discretes[i]);
 	}
-	small.bank = (struct lw_bank){small.sections, ARRAY_SIZE(small.sections)};
+	small.bank = (struct lw_bank){.sections = small.sections,
+				      .section_count = ARRAY_SIZE(small.sections)};
 	small.values.speed = 10;
 	small.values.baud = 9600;
 	small.values.gear = 1;

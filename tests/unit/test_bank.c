@@ -1,10 +1,11 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The register bank: whole requests, all or nothing. */
 #include <stdbool.h>
 #include <stdio.h>
 
 #include <unity.h>
 
-#include "lw/bank.h"
+#include "lw/modbus/bank.h"
 #include "small_bank.h"
 
 static struct lw_refusal why;
@@ -160,6 +161,10 @@ static void test_write_refuses_what_is_not_writable(void)
 	assert_refused(LW_REASON_NOT_WRITABLE, 1, 0, 0);
 	TEST_ASSERT_EQUAL_INT(-ENXIO, WRITE(30, 0, 0, 0, 0));
 	assert_refused(LW_REASON_NOT_WRITABLE, 30, 0, 0);
+	small.sections[0].allow = small_allow;
+	small.sections[0].store = NULL;
+	TEST_ASSERT_EQUAL_INT(-ENXIO, WRITE(1, 1));
+	assert_refused(LW_REASON_NOT_WRITABLE, 1, 0, 0);
 }
 
 static void test_write_refuses_half_of_a_pair(void)

@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The check of cam tables, and what the property tests do not see of the cam itself. */
 #include <unity.h>
 
 #include <string.h>
 
-#include "lw/cam.h"
+#include "lw/cam/cam.h"
 
 static struct lw_cam_table table;
 static struct lw_cam_scale scale;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Banks of cam tables: their words, their CRC, and the check under a parameter set. */
 #include <errno.h>
 #include <stdlib.h>
@@ -5,7 +6,9 @@
 
 #include <unity.h>
 
-#include "lw/cam_banks.h"
+#include "lw/cam/cam_banks.h"
+#include "lw/control/cam_check.h"
+#include "lw/control/params_units.h"
 
 static struct lw_cam_bank bank;
 static struct lw_params params;

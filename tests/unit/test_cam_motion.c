@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The cam as the edge interrupt sees it: what comes beside the table (tests/property has that). */
 #define _POSIX_C_SOURCE 200809L
 
@@ -7,7 +8,8 @@
 
 #include <unity.h>
 
-#include "lw/cam_motion.h"
+#include "cases.h"
+#include "lw/cam/cam_motion.h"
 
 /** The hill rises by 3 microsteps per edge for 100 edges and falls as fast. */
 #define SLOPE 3
@@ -42,6 +44,7 @@ void setUp(void)
 
 void tearDown(void)
 {
+	cases_end();
 }
 
 static int edge(int dd)
@@ -95,7 +98,7 @@ static void test_in_step_both_ways(void)
 
 static void test_owed_steps_are_given_as_there_is_room(void)
 {
-	for (int dd = -1; dd <= 1; dd += 2) {
+	FOR_BOTH_WAYS(dd) {
 		for (int sign = -1; sign <= 1; sign += 2) {
 			const int32_t owed = 37 * sign;
 			int32_t before;
@@ -134,7 +137,7 @@ static void test_steps_max_may_be_less(void)
 
 static void test_the_phase_shifts_without_a_burst(void)
 {
-	for (int dd = -1; dd <= 1; dd += 2) {
+	FOR_BOTH_WAYS(dd) {
 		for (int sign = -1; sign <= 1; sign += 2) {
 			const int32_t phase = 70 * sign;
 			int32_t reached = 0;

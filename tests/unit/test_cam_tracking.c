@@ -1,5 +1,7 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The carriage follows the drum by a cam: starts, what it does with switches, how it ends. */
 #include "cam_rig.h"
+#include "cases.h"
 
 static const struct lw_cam_row hill[] = {{0, 40}, {1000, 1540}, {3000, -460}, {4000, 40}};
 
@@ -11,6 +13,7 @@ void setUp(void)
 
 void tearDown(void)
 {
+	cases_end();
 }
 
 /** Where hill has the slave. Its slopes are whole or halves, halves up. */
@@ -54,6 +57,7 @@ static void test_absolute_begins_where_the_odometer_is(void)
 	rig_turn(9234);
 	rig_rest();
 	follow_hill(LW_CAM_START_ABSOLUTE);
+	command(LW_COMMAND_ACKNOWLEDGE_ROPE);
 	/* It went there before it followed. */
 	TEST_ASSERT_INT32_WITHIN(4, hill_at(9234), pos_usteps());
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_cycles);
@@ -92,7 +96,7 @@ static void test_relative_begins_here(void)
 
 static void test_next_cycle_waits_at_the_begin(void)
 {
-	for (int dd = -1; dd <= 1; dd += 2) {
+	FOR_BOTH_WAYS(dd) {
 		setUp();
 		rig_turn(3000);
 		rig_rest();
@@ -239,6 +243,8 @@ static const struct lw_cam_row wide[] = {{0, 0}, {8000, 7900}, {24000, -7900}, {
 
 static void test_switches_in_their_places_are_no_loss(void)
 {
+	/* A delay of the switches is not taken out of a cam: it would be 117 microsteps. */
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_SWITCH_DELAY_US, 7000));
 	put_in_force(CAM_TABLE(wide));
 	use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
 	track();
@@ -258,7 +264,7 @@ static void test_a_switch_that_never_triggers_is_a_loss(void)
 	static const struct lw_cam_row widest[] = {
 		{0, 0}, {9000, 8200}, {27000, -8200}, {36000, 0}};
 
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		setUp();
 		put_in_force(CAM_TABLE(widest));
 		use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
@@ -268,9 +274,10 @@ static void test_a_switch_that_never_triggers_is_a_loss(void)
 		TEST_ASSERT_FALSE(flag(LW_FLAG_LOS));
 		rig_set_switch(side, RIG_SWITCH_NEVER);
 		rig_drive(80000);
-		TEST_ASSERT_TRUE(rig.controller->los1[side].set);
-		TEST_ASSERT_FALSE(rig.controller->los1[1 - side].set);
-		TEST_ASSERT_FALSE(rig.controller->los2[0].set || rig.controller->los2[1].set);
+		TEST_ASSERT_TRUE(rig.controller->los.los1[side].set);
+		TEST_ASSERT_FALSE(rig.controller->los.los1[1 - side].set);
+		TEST_ASSERT_FALSE(rig.controller->los.los2[0].set ||
+				  rig.controller->los.los2[1].set);
 		TEST_ASSERT_FALSE(flag(LW_FLAG_LAUNCH_PERMIT));
 	}
 }
@@ -282,12 +289,13 @@ static void test_a_switch_elsewhere_is_a_loss_that_is_not_corrected(void)
 	track();
 	rig.switch_at_usteps[LW_PLUS] -= 300;
 	rig_drive(40000);
-	TEST_ASSERT_TRUE(rig.controller->los2[LW_PLUS].set);
-	TEST_ASSERT_FALSE(rig.controller->los1[LW_PLUS].set || rig.controller->los1[LW_MINUS].set);
+	TEST_ASSERT_TRUE(rig.controller->los.los2[LW_PLUS].set);
+	TEST_ASSERT_FALSE(rig.controller->los.los1[LW_PLUS].set ||
+			  rig.controller->los.los1[LW_MINUS].set);
 	TEST_ASSERT_FALSE(flag(LW_FLAG_LAUNCH_PERMIT));
 	TEST_ASSERT_EQUAL_INT32(LW_STATE_TRACKING, status()->state);
 	TEST_ASSERT_EQUAL_INT32(0, rig.controller->motion.corrected_usteps);
-	TEST_ASSERT_EQUAL_INT32(0, rig.controller->los_recoveries);
+	TEST_ASSERT_EQUAL_INT32(0, rig.controller->los.recoveries);
 	TEST_ASSERT_EQUAL_INT32(0, rig_error_usteps());
 }
 
@@ -365,6 +373,30 @@ static void test_an_absolute_start_of_a_free_axis_is_refused(void)
 	TEST_ASSERT_EQUAL_INT32(LW_ADDRESS_CAM_START, status()->command_address);
 }
 
+static void test_a_queued_table_gets_the_steps_that_it_asks_for(void)
+{
+	static const struct {
+		uint32_t slope_permille;
+		int steps_max;
+	} cases[] = {{0, 1},    {1, 1},    {1000, 1}, {1001, 2}, {2000, 2},
+		     {2001, 3}, {3000, 3}, {3001, 4}, {4000, 4}};
+
+	put_in_force((struct lw_cam_table){.row_count = 2, .rows = {{0, 9}, {1000, 9}}});
+	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_CAM_STEPS_PER_S_MAX, 1000));
+	use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
+	track();
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		struct lw_cam_bank bank = *rig.controller->cam_bank;
+
+		bank.statistics.slope_max_permille = cases[i].slope_permille;
+		rig.controller->motion.cam.steps_max = 0;
+		lw_cam_queue(rig.controller, &bank);
+		TEST_ASSERT_EQUAL_INT(cases[i].steps_max, rig.controller->motion.cam.steps_max);
+		TEST_ASSERT_EQUAL_PTR(&bank.table, rig.controller->motion.cam.next);
+		rig.controller->motion.cam.next = NULL;
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -385,5 +417,6 @@ int main(void)
 	RUN_TEST(test_back_to_the_screw);
 	RUN_TEST(test_a_free_axis_is_geared_and_ends_at_0);
 	RUN_TEST(test_an_absolute_start_of_a_free_axis_is_refused);
+	RUN_TEST(test_a_queued_table_gets_the_steps_that_it_asks_for);
 	return UNITY_END();
 }

@@ -1,8 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The life of the controller: modes, hand-over, stop, jog, overtravel, overspeed, interlocks. */
 #include <errno.h>
 
 #include <unity.h>
 
+#include "cases.h"
 #include "law_check.h"
 #include "rig.h"
 
@@ -15,6 +17,7 @@ void setUp(void)
 
 void tearDown(void)
 {
+	cases_end();
 }
 
 static void assert_refused(enum lw_reason reason, int ret)
@@ -61,7 +64,7 @@ static void test_power_up_is_unindexed_and_inhibited(void)
 
 static void test_hand_over_from_the_flange_keeps_the_orbit(void)
 {
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		rig_prepare(0);
 		rig.params.index_switch = side;
 		rig_track();
@@ -72,7 +75,7 @@ static void test_hand_over_from_the_flange_keeps_the_orbit(void)
 
 static void test_paper_row_hand_over_sets_the_slope(void)
 {
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		rig_prepare(0);
 		rig.params.park_at = LW_PARK_AT_POSITION;
 		rig.params.handover_direction = side;
@@ -107,10 +110,10 @@ static void test_a_slow_creep_counts_as_rest(void)
 	rig_power_up();
 	rig.drum_edges_per_s = 30; /* rest_edges_per_s is 50 */
 	rig_ticks(1000);
-	TEST_ASSERT_TRUE(rig.controller->drum_at_rest);
+	TEST_ASSERT_TRUE(rig.controller->speed.at_rest);
 	rig.drum_edges_per_s = 60;
 	rig_ticks(1000);
-	TEST_ASSERT_FALSE(rig.controller->drum_at_rest);
+	TEST_ASSERT_FALSE(rig.controller->speed.at_rest);
 }
 
 static void test_the_speed_is_measured_with_its_sign(void)
@@ -118,10 +121,10 @@ static void test_the_speed_is_measured_with_its_sign(void)
 	rig_power_up();
 	rig.drum_edges_per_s = 32000;
 	rig_ticks(100);
-	TEST_ASSERT_EQUAL_INT32(32000, rig.controller->drum_speed_edges_per_s);
+	TEST_ASSERT_EQUAL_INT32(32000, rig.controller->speed.edges_per_s);
 	rig.drum_edges_per_s = -8000;
 	rig_ticks(100);
-	TEST_ASSERT_EQUAL_INT32(-8000, rig.controller->drum_speed_edges_per_s);
+	TEST_ASSERT_EQUAL_INT32(-8000, rig.controller->speed.edges_per_s);
 }
 
 static void test_stop_while_tracking_a_resting_drum_keeps_the_index(void)
@@ -178,19 +181,32 @@ static void test_jog_outward_inside_a_reversal_stays_in_the_pattern(void)
 
 static void test_a_trim_that_leaves_the_resting_carriage_outside(void)
 {
-	rig.params.park_at = LW_PARK_AT_POSITION;
-	rig_track();
-	lw_controller_jog(rig.controller, 1, rig.now_us);
-	while (rig.carriage_usteps < 7900) {
-		rig_tick();
-		lw_controller_jog(rig.controller, 1, rig.now_us);
+	FOR_EACH_SIDE(side) {
+		const int outward = lw_side_direction(side);
+		int32_t inside;
+		int32_t past;
+
+		rig_prepare(0);
+		rig.params.park_at = LW_PARK_AT_POSITION;
+		rig_track();
+		lw_controller_jog(rig.controller, outward, rig.now_us);
+		while (outward * rig.carriage_usteps < 7900) {
+			rig_tick();
+			lw_controller_jog(rig.controller, outward, rig.now_us);
+		}
+		rig.drum_edges_per_s = 1000;
+		rig_run_to(LW_STATE_READY);
+		lw_controller_set_trim(rig.controller, side == LW_PLUS ? -1500 : 0,
+				       side == LW_MINUS ? 1500 : 0);
+		rig.drum_edges_per_s = 0;
+		/* Two microsteps inside of the sweep. */
+		rig_run_to(LW_STATE_CENTRING);
+		rig_run_to(LW_STATE_TRACKING);
+		inside = side == LW_PLUS ? (7850 - 2) * LW_USTEP : (-7850 + 1 + 2) * LW_USTEP;
+		past = outward * (inside - lw_motion_m(&rig.controller->motion));
+		TEST_ASSERT_TRUE(0 <= past && past < rig.derived.ks);
+		assert_pattern_goes_on();
 	}
-	rig.drum_edges_per_s = 1000;
-	rig_run_to(LW_STATE_READY);
-	lw_controller_set_trim(rig.controller, -1500, 0);
-	rig.drum_edges_per_s = 0;
-	rig_run_to(LW_STATE_TRACKING);
-	assert_pattern_goes_on();
 }
 
 static void test_mode_off_and_back(void)
@@ -318,9 +334,9 @@ static void test_jog_ends_by_itself_when_it_is_not_written_again(void)
 	rig_power_up();
 	lw_controller_jog(rig.controller, -1, rig.now_us);
 	rig_ticks(500);
-	TEST_ASSERT_FALSE(rig.controller->halting);
+	TEST_ASSERT_FALSE(rig.controller->moving.halting);
 	rig_ticks(1);
-	TEST_ASSERT_TRUE(rig.controller->halting);
+	TEST_ASSERT_TRUE(rig.controller->moving.halting);
 	assert_refused(LW_REASON_BUSY_MOVING, lw_controller_allow_jog(rig.controller, -1, &why));
 	rig_run_to(LW_STATE_UNINDEXED);
 }
@@ -343,7 +359,7 @@ static void test_jog_zero_ends_it_and_is_always_allowed(void)
 
 static void test_jog_of_an_indexed_carriage_stops_inside_the_reversal_points(void)
 {
-	for (int direction = -1; direction <= 1; direction += 2) {
+	FOR_BOTH_WAYS(direction) {
 		rig_prepare(0);
 		rig.params.park_at = LW_PARK_AT_POSITION;
 		rig_track();
@@ -385,7 +401,7 @@ static void test_busy_says_why(void)
 
 static void test_overtravel_while_tracking(void)
 {
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		rig_prepare(0);
 		rig_track();
 		rig_drive(10000);
@@ -437,6 +453,35 @@ static void test_overtravel_stops_steps_that_way_at_once(void)
 	TEST_ASSERT_TRUE(rig.carriage_usteps < place);
 }
 
+/* The contact is open again when the supervisor looks, but a step is missing. */
+static void test_overtravel_between_two_ticks_is_a_fault_if_it_withheld_a_step(void)
+{
+	FOR_EACH_SIDE(side) {
+		const int outward = side == LW_PLUS ? 1 : -1;
+
+		for (int toward = 0; toward < 2; toward++) {
+			rig_prepare(0);
+			rig_track();
+			rig_follow_to(0, toward ? outward : -outward, 40000);
+			lw_controller_overtravel(rig.controller, side, true);
+			rig_turn(48);
+			lw_controller_overtravel(rig.controller, side, false);
+			rig_ticks(1);
+			TEST_ASSERT_EQUAL_INT(toward ? (side == LW_PLUS ? LW_FAULT_OVERTRAVEL_PLUS
+									: LW_FAULT_OVERTRAVEL_MINUS)
+						     : LW_FAULT_NONE,
+					      rig.controller->fault);
+			if (!toward) {
+				TEST_ASSERT_EQUAL_INT32(0, rig_error_usteps());
+				continue;
+			}
+			TEST_ASSERT_FALSE(rig.controller->indexed);
+			TEST_ASSERT_EQUAL_INT(
+				0, lw_controller_allow_clear_fault(rig.controller, &why));
+		}
+	}
+}
+
 static void test_overtravel_while_jogging_toward_it(void)
 {
 	rig_power_up();
@@ -477,7 +522,11 @@ static void test_overspeed(void)
 		TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state);
 		TEST_ASSERT_EQUAL_INT(LW_FAULT_OVERSPEED, rig.controller->fault);
 		TEST_ASSERT_TRUE(inhibited(LW_LAUNCH_INHIBIT_OVERSPEED));
-		rig.drum_edges_per_s = 0;
+		TEST_ASSERT_EQUAL_INT(-EBUSY,
+				      lw_controller_allow_clear_fault(rig.controller, &why));
+		TEST_ASSERT_EQUAL_UINT16(LW_REASON_CAUSE_PRESENT, why.reason);
+		rig.drum_edges_per_s = sign * 50000;
+		rig_ticks(200);
 		TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_clear_fault(rig.controller, &why));
 		lw_controller_clear_fault(rig.controller);
 		TEST_ASSERT_FALSE(inhibited(LW_LAUNCH_INHIBIT_OVERSPEED));
@@ -510,18 +559,52 @@ static void test_a_wiring_fault_is_sticky_until_cleared(void)
 	TEST_ASSERT_EQUAL_UINT16(0, lw_controller_launch_inhibit(rig.controller));
 }
 
+static void test_a_wiring_fault_that_stands_cannot_be_cleared(void)
+{
+	FOR_EACH_SIDE(side) {
+		rig_prepare(0);
+		rig_track();
+		rig_set_switch(side, RIG_SWITCH_SHORTED);
+		rig_ticks(30);
+		TEST_ASSERT_EQUAL_INT(LW_FAULT_NONE, rig.controller->fault);
+		assert_refused(LW_REASON_CAUSE_PRESENT,
+			       lw_controller_allow_clear_fault(rig.controller, &why));
+		rig_set_switch(side, RIG_SWITCH_WORKS);
+		rig_ticks(30);
+		TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_clear_fault(rig.controller, &why));
+	}
+}
+
+static void test_another_mode_waits_for_the_drum_in_either_direction(void)
+{
+	rig_track();
+	lw_controller_set_mode(rig.controller, LW_MODE_CENTRE);
+	rig_run_to(LW_STATE_CENTRED);
+	rig.drum_edges_per_s = 1000;
+	rig_ticks(300);
+	lw_controller_set_mode(rig.controller, LW_MODE_TRACK);
+	rig_ticks(300);
+	TEST_ASSERT_EQUAL_INT(LW_MODE_CENTRE, rig.controller->mode);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_CENTRED, rig.controller->state);
+	rig_rest();
+	TEST_ASSERT_EQUAL_INT(LW_MODE_TRACK, rig.controller->mode);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
+}
+
 static void test_causes_of_faults_that_still_stand(void)
 {
-	rig.switches[LW_PLUS] = RIG_SWITCH_ALWAYS;
-	rig.switches[LW_MINUS] = RIG_SWITCH_ALWAYS;
-	rig_power_up();
-	rig_index();
-	assert_refused(LW_REASON_CAUSE_PRESENT,
-		       lw_controller_allow_clear_fault(rig.controller, &why));
-	rig_set_switch(LW_PLUS, RIG_SWITCH_WORKS);
-	TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_clear_fault(rig.controller, &why));
-
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
+		rig_prepare(0);
+		rig.switches[LW_PLUS] = RIG_SWITCH_ALWAYS;
+		rig.switches[LW_MINUS] = RIG_SWITCH_ALWAYS;
+		rig_power_up();
+		rig_index();
+		assert_refused(LW_REASON_CAUSE_PRESENT,
+			       lw_controller_allow_clear_fault(rig.controller, &why));
+		rig_set_switch(side, RIG_SWITCH_WORKS);
+		TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_clear_fault(rig.controller, &why));
+	}
+	FOR_EACH_SIDE(side) {
 		rig_prepare(0);
 		rig.switches[side] = RIG_SWITCH_SHORTED;
 		rig_power_up();
@@ -557,6 +640,225 @@ static void test_the_direction_output_can_be_inverted(void)
 	TEST_ASSERT_TRUE(rig.carriage_usteps < -100);
 }
 
+static void test_a_stop_of_a_jog_ends_in_the_state_that_there_was(void)
+{
+	for (int fault = LW_FAULT_NONE; fault <= LW_FAULT_INDEX_SPAN;
+	     fault += LW_FAULT_INDEX_SPAN) {
+		rig_prepare(0);
+		rig_power_up();
+		rig.controller->fault = (enum lw_fault)fault;
+		lw_controller_jog(rig.controller, 1, rig.now_us);
+		rig_ticks(100);
+		lw_controller_stop(rig.controller);
+		rig_run_to(fault ? LW_STATE_FAULT : LW_STATE_UNINDEXED);
+	}
+}
+
+static void test_another_set_that_needs_an_index_takes_it(void)
+{
+	for (int centre = 0; centre < 2; centre++) {
+		rig_prepare(0);
+		rig_track();
+		lw_controller_set_mode(rig.controller, LW_MODE_CENTRE);
+		rig_run_to(LW_STATE_CENTRED);
+		if (!centre) {
+			lw_controller_set_mode(rig.controller, LW_MODE_TRACK);
+			rig_run_to(LW_STATE_TRACKING);
+			rig_rest();
+			lw_controller_stop(rig.controller);
+			TEST_ASSERT_EQUAL_INT(LW_STATE_READY, rig.controller->state);
+		}
+		lw_controller_configure(rig.controller, &rig.params, &rig.derived, false);
+		TEST_ASSERT_TRUE(rig.controller->indexed);
+		lw_controller_set_trim(rig.controller, 5, -5);
+		rig.controller->resume.known = true;
+
+		struct lw_params params = rig.params;
+		struct lw_derived derived;
+
+		params.reversal_plus_um = 79500;
+		params.encoder_pulses_per_rev = 800;
+		TEST_ASSERT_EQUAL_INT(0, lw_params_derive(&params, &derived, &why));
+		FOR_EACH_SIDE(side) {
+			rig.controller->limit[side].active = true; /* the wires say else */
+		}
+		lw_controller_configure(rig.controller, &params, &derived, true);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_UNINDEXED, rig.controller->state);
+		TEST_ASSERT_FALSE(rig.controller->indexed);
+		TEST_ASSERT_FALSE(rig.controller->on_orbit);
+		TEST_ASSERT_FALSE(rig.controller->resume.known);
+		TEST_ASSERT_EQUAL_PTR(&params, rig.controller->params);
+		TEST_ASSERT_EQUAL_PTR(&derived, rig.controller->derived);
+		TEST_ASSERT_EQUAL_INT32(1600, rig.controller->encoder_index.edges_per_rev);
+		TEST_ASSERT_EQUAL_INT32(0, rig.controller->trim.plus_um);
+		TEST_ASSERT_EQUAL_INT32(0, rig.controller->trim.minus_um);
+		TEST_ASSERT_EQUAL_INT32(7950 * LW_USTEP, rig.controller->motion.window->sweep_end);
+		TEST_ASSERT_EQUAL_INT32(derived.ka, rig.controller->motion.law.ka);
+		TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+		FOR_EACH_SIDE(side) {
+			TEST_ASSERT_FALSE(rig.controller->limit[side].active);
+		}
+	}
+}
+
+static void test_a_master_that_is_lost_says_nothing_about_the_drum(void)
+{
+	rig_power_up();
+	rig.controller->drum_watch.running = true;
+	assert_refused(LW_REASON_DRUM_RUNNING, lw_controller_allow_index(rig.controller, &why));
+	rig.controller->master_lost = true;
+	TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_index(rig.controller, &why));
+}
+
+static void test_rope_laid_standing_is_acknowledged_after_an_index(void)
+{
+	rig_track();
+	TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_acknowledge_rope(rig.controller, &why));
+	rig.controller->rope.set = true;
+	rig.controller->rope.indexed_since = false;
+	assert_refused(LW_REASON_ROPE_INDEX_FIRST,
+		       lw_controller_allow_acknowledge_rope(rig.controller, &why));
+	rig_index();
+	rig_run_to(LW_STATE_TRACKING);
+	rig_rest();
+	TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_acknowledge_rope(rig.controller, &why));
+	rig.controller->indexed = false;
+	assert_refused(LW_REASON_ROPE_INDEX_FIRST,
+		       lw_controller_allow_acknowledge_rope(rig.controller, &why));
+}
+
+static void test_rope_is_laid_standing_from_so_many_edges_on(void)
+{
+	static const struct {
+		int32_t permille;
+		uint32_t edges_per_1000_drum_revs;
+		int32_t edges;
+	} cases[] = {{250, 2880000, 720}, {1, 2880000, 2}, {1, 200000, 1}, {10000, 200000, 2000}};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		rig_prepare(0);
+		rig.params.standing_turns_permille = cases[i].permille;
+		rig_power_up();
+		rig.derived.edges_per_1000_drum_revs = cases[i].edges_per_1000_drum_revs;
+		rig_drive(cases[i].edges - 1);
+		rig_ticks(1);
+		TEST_ASSERT_FALSE(rig.controller->rope.set);
+		rig_drive(1);
+		TEST_ASSERT_TRUE(rig.controller->rope.set);
+	}
+	rig_prepare(0);
+	rig.params.standing_turns_permille = 0;
+	rig_power_up();
+	rig_drive(30000);
+	TEST_ASSERT_FALSE(rig.controller->rope.set);
+}
+
+static void test_another_set_keeps_a_fault(void)
+{
+	rig_power_up();
+	rig.switches[LW_PLUS] = RIG_SWITCH_NEVER;
+	rig_index();
+	rig_run_to_fault(LW_FAULT_INDEX_NO_SWITCH);
+	lw_controller_configure(rig.controller, &rig.params, &rig.derived, true);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state);
+}
+
+static void test_jog_zero_moves_nothing_and_forgets_no_place(void)
+{
+	rig_power_up();
+	lw_controller_jog(rig.controller, 1, rig.now_us);
+	rig_ticks(300);
+	lw_controller_jog(rig.controller, 0, rig.now_us);
+	rig_run_to(LW_STATE_UNINDEXED);
+
+	const int32_t m = lw_motion_m(&rig.controller->motion);
+
+	TEST_ASSERT_NOT_EQUAL(0, m);
+	lw_controller_jog(rig.controller, 0, rig.now_us);
+	TEST_ASSERT_EQUAL_INT32(m, lw_motion_m(&rig.controller->motion));
+	TEST_ASSERT_EQUAL_INT(LW_STATE_UNINDEXED, rig.controller->state);
+}
+
+static void test_jog_of_an_indexed_carriage_ends_two_microsteps_inside_and_goes_no_farther(void)
+{
+	FOR_BOTH_WAYS(direction) {
+		const int32_t target = direction > 0 ? 7998 * LW_USTEP : -7997 * LW_USTEP;
+		int32_t past;
+
+		rig_prepare(0);
+		rig.params.park_at = LW_PARK_AT_POSITION;
+		rig.params.jog_hold_ms = 5000;
+		rig_track();
+		for (int i = 0; i < 3; i++) {
+			lw_controller_jog(rig.controller, direction, rig.now_us);
+			rig_ticks(4000);
+		}
+		TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
+		past = direction * (lw_motion_m(&rig.controller->motion) - target);
+		TEST_ASSERT_TRUE(0 <= past && past < rig.derived.ks);
+
+		/* There it goes on following, whoever asks for more. */
+		rig_ticks(1);
+		lw_controller_jog(rig.controller, direction, rig.now_us);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
+		TEST_ASSERT_EQUAL_INT32(target + direction * past,
+					lw_motion_m(&rig.controller->motion));
+	}
+}
+
+static void test_a_long_hold_of_a_jog_is_exact(void)
+{
+	rig.params.jog_hold_ms = 2500;
+	rig_power_up();
+	lw_controller_jog(rig.controller, -1, rig.now_us);
+	rig_ticks(2500);
+	TEST_ASSERT_FALSE(rig.controller->moving.halting);
+	rig_ticks(1);
+	TEST_ASSERT_TRUE(rig.controller->moving.halting);
+}
+
+/** Something wrote over the window or the law. It is noted where the carriage was going. */
+static void test_a_law_that_was_changed_is_mended_and_told(void)
+{
+	for (int what = 0; what < 4; what++) {
+		FOR_EACH_SIDE(side) {
+			struct lw_law_window stray;
+			struct lw_law_window *window;
+
+			rig_prepare(0);
+			rig_track();
+			rig_follow_to(0, lw_side_direction(side), 40000);
+			rig_rest();
+			TEST_ASSERT_FALSE(lw_controller_mend_law(rig.controller));
+			window = rig.controller->motion.window == &rig.controller->windows[0]
+					 ? &rig.controller->windows[0]
+					 : &rig.controller->windows[1];
+			stray = *window;
+			switch (what) {
+			case 0:
+				rig.controller->motion.window = &stray;
+				break;
+			case 1:
+				window->ka++;
+				rig.controller->motion.law.ka++;
+				break;
+			case 2:
+				window->ks++;
+				rig.controller->motion.law.u += lw_side_direction(side);
+				break;
+			default:
+				rig.controller->motion.law.span++;
+				break;
+			}
+			TEST_ASSERT_TRUE(lw_controller_mend_law(rig.controller));
+			TEST_ASSERT_FALSE(lw_controller_mend_law(rig.controller));
+			TEST_ASSERT_TRUE(rig.controller->los.los2[side].set);
+			TEST_ASSERT_FALSE(rig.controller->los.los2[!side].set);
+			assert_pattern_goes_on();
+		}
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -584,13 +886,26 @@ int main(void)
 	RUN_TEST(test_busy_says_why);
 	RUN_TEST(test_overtravel_while_tracking);
 	RUN_TEST(test_overtravel_stops_steps_that_way_at_once);
+	RUN_TEST(test_overtravel_between_two_ticks_is_a_fault_if_it_withheld_a_step);
 	RUN_TEST(test_overtravel_while_jogging_toward_it);
 	RUN_TEST(test_overtravel_in_mode_off_is_a_fault_only_afterwards);
 	RUN_TEST(test_overspeed);
 	RUN_TEST(test_overspeed_of_a_drum_that_is_not_followed_is_no_fault);
 	RUN_TEST(test_a_wiring_fault_is_sticky_until_cleared);
+	RUN_TEST(test_a_wiring_fault_that_stands_cannot_be_cleared);
+	RUN_TEST(test_another_mode_waits_for_the_drum_in_either_direction);
 	RUN_TEST(test_causes_of_faults_that_still_stand);
 	RUN_TEST(test_the_remaining_launch_inhibit_bits);
 	RUN_TEST(test_the_direction_output_can_be_inverted);
+	RUN_TEST(test_a_stop_of_a_jog_ends_in_the_state_that_there_was);
+	RUN_TEST(test_another_set_that_needs_an_index_takes_it);
+	RUN_TEST(test_a_master_that_is_lost_says_nothing_about_the_drum);
+	RUN_TEST(test_rope_laid_standing_is_acknowledged_after_an_index);
+	RUN_TEST(test_rope_is_laid_standing_from_so_many_edges_on);
+	RUN_TEST(test_another_set_keeps_a_fault);
+	RUN_TEST(test_jog_zero_moves_nothing_and_forgets_no_place);
+	RUN_TEST(test_jog_of_an_indexed_carriage_ends_two_microsteps_inside_and_goes_no_farther);
+	RUN_TEST(test_a_long_hold_of_a_jog_is_exact);
+	RUN_TEST(test_a_law_that_was_changed_is_mended_and_told);
 	return UNITY_END();
 }

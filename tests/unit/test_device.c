@@ -1,10 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The whole controller as one object: parameter sets, commands, storage, registers, coils. */
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <unity.h>
 
-#include "lw/crc16.h"
+#include "lw/modbus/crc16.h"
 #include "device_rig.h"
 
 void setUp(void)
@@ -41,7 +43,7 @@ static void test_the_host_can_override_line_settings_and_add_registers(void)
 		.points = &point,
 		.point_count = 1,
 		.context = &value,
-		.image = rig.device.sections[5].image, /* hands out its context */
+		.image = rig.device.sections[6].image, /* hands out its context */
 	};
 	const struct lw_device_config other = {
 		.host = LW_HOST_QEMU,
@@ -385,6 +387,82 @@ static void test_trim_by_register(void)
 	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_MINUS_UM, why.limit));
 }
 
+enum {
+	SETPOINTS = 5
+};
+
+/** Write holding registers 0 to 4 in one request. */
+static int write_setpoints(enum lw_command code, int jog, int trim_plus_um)
+{
+	const int32_t values[SETPOINTS] = {(int32_t)code, LW_MODE_TRACK, jog, trim_plus_um, 0};
+	uint8_t in[2 * SETPOINTS];
+
+	for (size_t i = 0; i < SETPOINTS; i++) {
+		in[2 * i] = (uint8_t)((uint32_t)values[i] >> 8);
+		in[2 * i + 1] = (uint8_t)values[i];
+	}
+	return lw_bank_write_registers(&rig.device.bank, LW_ADDRESS_COMMAND, SETPOINTS, in, &why);
+}
+
+/* Each may be right by itself; together the second would run where it may not. */
+static void test_a_request_gives_one_order(void)
+{
+	const struct {
+		enum lw_command code;
+		int jog;
+		int trim_plus_um;
+		int ret;
+	} requests[] = {
+		{LW_COMMAND_APPLY, 1, 0, -EINVAL},
+		{LW_COMMAND_INDEX, -1, 0, -EINVAL},
+		{LW_COMMAND_SAVE, 1, 0, -EINVAL},
+		{LW_COMMAND_TRIM_EARLY, 0, -300, -EINVAL},
+		{LW_COMMAND_TRIM_LATE, 0, -300, -EINVAL},
+		{LW_COMMAND_NONE, 1, -300, -EINVAL},
+		{LW_COMMAND_CLEAR_FAULT, 0, -300, 0},
+		{LW_COMMAND_NONE, 0, -300, 0},
+		{LW_COMMAND_STOP, 0, -200, 0},
+		{LW_COMMAND_NONE, 1, -200, 0}, /* the trim as it is */
+		{LW_COMMAND_STOP, 1, -200, 0},
+		{LW_COMMAND_INDEX, 0, -200, 0},
+	};
+
+	track();
+	for (size_t i = 0; i < sizeof(requests) / sizeof(requests[0]); i++) {
+		const struct lw_controller before = *rig.controller;
+		const int ret = write_setpoints(requests[i].code, requests[i].jog,
+						requests[i].trim_plus_um);
+
+		char row[32];
+
+		(void)snprintf(row, sizeof(row), "request %zu", i);
+		TEST_ASSERT_EQUAL_INT_MESSAGE(requests[i].ret, ret, row);
+		if (ret != 0) {
+			TEST_ASSERT_EQUAL_UINT16(LW_REASON_SEVERAL_COMMANDS, why.reason);
+			TEST_ASSERT_EQUAL_MEMORY(&before, rig.controller, sizeof(before));
+		} else if (requests[i].code != LW_COMMAND_INDEX) {
+			rig_ticks(3000);
+		}
+	}
+	TEST_ASSERT_EQUAL_INT(LW_STATE_SEEKING, rig.controller->state);
+
+	/* Coils: apply and a jog; both jogs; a stop and a jog. */
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_EQUAL_INT(
+		-EINVAL, lw_bank_write_bits(&rig.device.bank, 0, 8, (const uint8_t[]){0x88}, &why));
+	TEST_ASSERT_EQUAL_UINT16(LW_REASON_SEVERAL_COMMANDS, why.reason);
+	TEST_ASSERT_EQUAL_UINT16(LW_ADDRESS_APPLY, why.address);
+	assert_command(LW_COMMAND_APPLY, LW_RESULT_REFUSED, LW_REASON_SEVERAL_COMMANDS);
+	TEST_ASSERT_EQUAL_INT(
+		-EINVAL, lw_bank_write_bits(&rig.device.bank, 6, 2, (const uint8_t[]){0x03}, &why));
+	TEST_ASSERT_EQUAL_UINT16(LW_ADDRESS_JOG_MINUS, why.address);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
+	TEST_ASSERT_EQUAL_INT(
+		0, lw_bank_write_bits(&rig.device.bank, 0, 8, (const uint8_t[]){0x42}, &why));
+	rig_ticks(3000);
+	TEST_ASSERT_TRUE(rig.controller->held);
+}
+
 /** A request of the master: read one input register. Its answer comes when the frame has ended. */
 static void ask(uint64_t slave_now_us)
 {
@@ -463,16 +541,34 @@ static void test_the_odometer_saturates(void)
 	TEST_ASSERT_EQUAL_INT32(-2400, status()->rope_mm);
 }
 
+static void test_real_hardware_wants_a_saved_set(void)
+{
+	struct lw_device_config hardware = *rig.device.config;
+
+	hardware.host = LW_HOST_HARDWARE;
+	rig.device.config = &hardware;
+	TEST_ASSERT_TRUE(flag(LW_FLAG_SET_UNCONFIRMED));
+	TEST_ASSERT_TRUE(status()->launch_inhibit >> LW_LAUNCH_INHIBIT_SET_UNCONFIRMED & 1);
+	TEST_ASSERT_TRUE(read_bit(LW_SPACE_DISCRETE, LW_FLAG_SET_UNCONFIRMED));
+	command(LW_COMMAND_SAVE);
+	TEST_ASSERT_EQUAL_INT(0, rig_write_slot(0));
+	TEST_ASSERT_FALSE(flag(LW_FLAG_SET_UNCONFIRMED));
+	TEST_ASSERT_FALSE(status()->launch_inhibit >> LW_LAUNCH_INHIBIT_SET_UNCONFIRMED & 1);
+	TEST_ASSERT_FALSE(read_bit(LW_SPACE_DISCRETE, LW_FLAG_SET_UNCONFIRMED));
+}
+
 /** Bytes of the memory that a table is about. */
 static size_t image_size(const struct lw_point *points)
 {
-	return points == lw_map_coils || points == lw_map_discretes ? sizeof(uint32_t)
-	       : points == lw_map_setpoints                         ? sizeof(struct lw_setpoints)
-	       : points == lw_map_params                            ? sizeof(struct lw_params)
-	       : points == lw_map_status                            ? sizeof(struct lw_status)
-	       : points == lw_map_cam_upload                        ? sizeof(struct lw_cam_upload)
-	       : points == lw_map_bench                             ? sizeof(struct lw_bench)
-								    : 0;
+	return points == lw_map_coils || points == lw_map_discretes ||
+			       points == &lw_map_discretes[32]
+		       ? sizeof(uint32_t)
+	       : points == lw_map_setpoints  ? sizeof(struct lw_setpoints)
+	       : points == lw_map_params     ? sizeof(struct lw_params)
+	       : points == lw_map_status     ? sizeof(struct lw_status)
+	       : points == lw_map_cam_upload ? sizeof(struct lw_cam_upload)
+	       : points == lw_map_bench      ? sizeof(struct lw_bench)
+					     : 0;
 }
 
 static void check_point(const struct lw_bank_section *section, const struct lw_point *point)
@@ -550,9 +646,11 @@ int main(void)
 	RUN_TEST(test_jog_by_coil_and_by_register);
 	RUN_TEST(test_mode_by_register);
 	RUN_TEST(test_trim_by_register);
+	RUN_TEST(test_a_request_gives_one_order);
 	RUN_TEST(test_master_lost);
 	RUN_TEST(test_status_while_tracking);
 	RUN_TEST(test_the_odometer_saturates);
+	RUN_TEST(test_real_hardware_wants_a_saved_set);
 	RUN_TEST(test_the_sections_are_as_the_bank_needs_them);
 	return UNITY_END();
 }

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* A device's banks of cam tables: upload, check, putting in force, storage. */
 #include "cam_rig.h"
 
@@ -550,6 +551,17 @@ static void test_a_checked_table_is_checked_again_under_other_parameters(void)
 	assert_said_no(LW_COMMAND_CAM_ACTIVATE, LW_REASON_CAM_NO_TABLE, 0);
 }
 
+static void test_where_a_cam_stands_is_not_kept_for_resuming(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_RESUME, 1));
+	follow(hill);
+	rig_turn(700);
+	rig_ticks(500);
+	TEST_ASSERT_TRUE(running()->on && rig.controller->speed.at_rest);
+	TEST_ASSERT_EQUAL_INT32(0, status()->resume_direction);
+	TEST_ASSERT_FALSE(rig.controller->resume.known);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -572,5 +584,6 @@ int main(void)
 	RUN_TEST(test_a_joint_while_it_waits);
 	RUN_TEST(test_apply_is_refused_if_the_table_in_force_does_not_fit);
 	RUN_TEST(test_a_checked_table_is_checked_again_under_other_parameters);
+	RUN_TEST(test_where_a_cam_stands_is_not_kept_for_resuming);
 	return UNITY_END();
 }

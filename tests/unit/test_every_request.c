@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Every address with every count that the map accepts, reading and writing. Only these two decide
  * where the bank goes, so with the sanitizers this is the proof by exhaustion that it stays in its
@@ -9,7 +10,7 @@
 
 #include <unity.h>
 
-#include "lw/bank.h"
+#include "lw/modbus/bank.h"
 #include "lw/map.h"
 
 #define REGISTERS_MAX 125u
@@ -31,6 +32,10 @@ static const void *image(void *context)
 static struct lw_bank_section sections[] = {
 	SECTION(LW_SPACE_COIL, coils, 0),
 	SECTION(LW_SPACE_DISCRETE, discretes, 0),
+	{.space = LW_SPACE_DISCRETE,
+	 .points = &lw_map_discretes[32],
+	 .point_count = LW_MAP_DISCRETES_COUNT - 32,
+	 .image = image},
 	SECTION(LW_SPACE_HOLDING, setpoints, 0),
 	SECTION(LW_SPACE_HOLDING, params, 0),
 	SECTION(LW_SPACE_HOLDING, bench, 0),
@@ -42,13 +47,20 @@ static struct lw_bank_section sections[] = {
 
 #define SECTION_COUNT (sizeof(sections) / sizeof(sections[0]))
 
-static const struct lw_bank bank = {sections, SECTION_COUNT};
+static const struct lw_bank bank = {.sections = sections, .section_count = SECTION_COUNT};
 
 /** Bytes behind each section, to the byte: the sanitizer watches their end. */
 static const size_t image_sizes[SECTION_COUNT] = {
-	sizeof(uint32_t),         sizeof(uint32_t),         sizeof(struct lw_setpoints),
-	sizeof(struct lw_params), sizeof(struct lw_bench),  sizeof(struct lw_cam_upload),
-	sizeof(struct lw_status), sizeof(struct lw_params), sizeof(struct lw_params),
+	sizeof(uint32_t),
+	sizeof(uint32_t),
+	sizeof(uint32_t),
+	sizeof(struct lw_setpoints),
+	sizeof(struct lw_params),
+	sizeof(struct lw_bench),
+	sizeof(struct lw_cam_upload),
+	sizeof(struct lw_status),
+	sizeof(struct lw_params),
+	sizeof(struct lw_params),
 };
 
 /** What the tables say of an address, read off them in the plainest way. */

@@ -1,6 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Every motion by simulated edges: indexing, backing off, parking, centring, jogging, halting. */
 #include <unity.h>
 
+#include "cases.h"
 #include "rig.h"
 
 void setUp(void)
@@ -10,6 +12,7 @@ void setUp(void)
 
 void tearDown(void)
 {
+	cases_end();
 }
 
 /** While the drum turns there is no hand-over: the carriage stays parked. */
@@ -32,7 +35,7 @@ static void check_index(int32_t from_usteps, enum lw_side index_switch, enum lw_
 	TEST_ASSERT_TRUE(rig.controller->indexed);
 	TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
 	TEST_ASSERT_EQUAL_INT32(0, rig.controller->motion.law.u);
-	TEST_ASSERT_INT32_WITHIN(1, 0, rig.controller->span_error_usteps);
+	TEST_ASSERT_INT32_WITHIN(1, 0, rig.controller->homing.span_error_usteps);
 	if (park_at == LW_PARK_AT_POSITION) {
 		TEST_ASSERT_INT32_WITHIN(1, 1234, rig.carriage_usteps);
 	} else {
@@ -48,7 +51,7 @@ static void test_index_from_anywhere_on_either_switch_to_either_place(void)
 					 7795, 7700, -5000, -7839, -7840, -8240, -7795};
 
 	for (size_t place = 0; place < sizeof(places) / sizeof(places[0]); place++) {
-		for (int side = 0; side < 2; side++) {
+		FOR_EACH_SIDE(side) {
 			for (int park = 0; park < 2; park++) {
 				check_index(places[place], (enum lw_side)side,
 					    (enum lw_park_at)park);
@@ -60,7 +63,7 @@ static void test_index_from_anywhere_on_either_switch_to_either_place(void)
 static void test_a_trigger_on_the_last_microstep_of_the_ramp(void)
 {
 	/* Ka 100, Nr 37: the ramp is little more than one microstep; its only step triggers. */
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		const int direction = lw_side_direction(side);
 
 		rig_prepare(direction * 7839);
@@ -103,16 +106,39 @@ static void test_states_of_an_index_in_order(void)
 static void test_index_clears_los_flags_and_the_fault(void)
 {
 	rig_power_up();
-	rig.controller->los1[LW_MINUS].set = true;
-	rig.controller->los2[LW_PLUS].set = true;
+	rig.controller->los.los1[LW_MINUS].set = true;
+	rig.controller->los.los2[LW_PLUS].set = true;
 	rig.controller->fault = LW_FAULT_INDEX_SPAN;
 	rig_index();
 	TEST_ASSERT_EQUAL_INT(LW_FAULT_NONE, rig.controller->fault);
 	rig_run_to(LW_STATE_PARKING);
-	TEST_ASSERT_TRUE(rig.controller->los1[LW_MINUS].set);
+	TEST_ASSERT_TRUE(rig.controller->los.los1[LW_MINUS].set);
 	run_to_ready();
-	TEST_ASSERT_FALSE(rig.controller->los1[LW_MINUS].set);
-	TEST_ASSERT_FALSE(rig.controller->los2[LW_PLUS].set);
+	TEST_ASSERT_FALSE(rig.controller->los.los1[LW_MINUS].set);
+	TEST_ASSERT_FALSE(rig.controller->los.los2[LW_PLUS].set);
+}
+
+/** Nobody would see the switch: a supervisor that has died must not let the carriage run on. */
+static void test_without_ticks_the_edge_timer_moves_nothing_after_50_ms(void)
+{
+	rig_power_up();
+	rig_index();
+	rig_run_to(LW_STATE_SEEKING);
+	rig_ticks(200);
+
+	const int32_t from_usteps = rig.carriage_usteps;
+	const uint32_t alone = lw_controller_timer_rate_edges_per_s(rig.controller) / 20 + 1;
+
+	for (uint32_t edge = 0; edge < 10 * alone; edge++) {
+		rig_step(lw_controller_timer_edge(rig.controller));
+		if (edge + 1 == alone) {
+			TEST_ASSERT_GREATER_THAN_INT32(from_usteps, rig.carriage_usteps);
+			rig.carriage_usteps = from_usteps;
+		}
+	}
+	TEST_ASSERT_EQUAL_INT32(from_usteps, rig.carriage_usteps);
+	rig_ticks(10);
+	TEST_ASSERT_GREATER_THAN_INT32(from_usteps, rig.carriage_usteps);
 }
 
 static void test_no_switch_within_the_travel(void)
@@ -175,7 +201,7 @@ static void test_both_switches_active(void)
 
 static void test_wiring_at_the_start(void)
 {
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		rig_prepare(0);
 		rig.switches[side] = RIG_SWITCH_SHORTED;
 		rig_power_up();
@@ -191,7 +217,7 @@ static void test_wiring_at_the_start(void)
 static void test_wiring_while_indexing(void)
 {
 	/* The NO wire is broken: it shows only when the carriage has come to the switch. */
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		rig_prepare(0);
 		rig.switches[side] = RIG_SWITCH_NO_OPEN;
 		rig_power_up();
@@ -227,7 +253,7 @@ static void check_span(enum lw_side index_switch, int32_t shift)
 		rig_run_to_fault(LW_FAULT_INDEX_SPAN);
 	} else {
 		run_to_ready();
-		TEST_ASSERT_INT32_WITHIN(1, shift, rig.controller->span_error_usteps);
+		TEST_ASSERT_INT32_WITHIN(1, shift, rig.controller->homing.span_error_usteps);
 	}
 }
 
@@ -235,7 +261,7 @@ static void test_span_of_the_switches(void)
 {
 	static const int32_t shifts[] = {0, 99, -99, 103, -103, 200, -200};
 
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		for (size_t i = 0; i < sizeof(shifts) / sizeof(shifts[0]); i++) {
 			check_span((enum lw_side)side, shifts[i]);
 		}
@@ -245,6 +271,9 @@ static void test_span_of_the_switches(void)
 		rig_power_up();
 		rig_index();
 		rig_run_to_fault(LW_FAULT_INDEX_SPAN);
+		/* As far as it looked: the tolerance, and what a tick adds. */
+		TEST_ASSERT_INT32_WITHIN(3, -lw_side_direction(side) * 103,
+					 rig.controller->homing.span_error_usteps);
 	}
 }
 
@@ -255,12 +284,34 @@ static void test_span_trigger_just_beyond_the_tolerance_in_one_tick(void)
 	rig_power_up();
 	rig_index();
 	rig_run_to_fault(LW_FAULT_INDEX_SPAN);
-	TEST_ASSERT_INT32_WITHIN(1, 150, rig.controller->span_error_usteps);
+	TEST_ASSERT_INT32_WITHIN(1, 150, rig.controller->homing.span_error_usteps);
+}
+
+static void test_late_switches_are_where_they_were_reached(void)
+{
+	/* 6 ms at 10,000 edges/s are 25 microsteps. The other one tells past its tolerance. */
+	FOR_EACH_SIDE(side) {
+		const int direction = lw_side_direction(side);
+
+		for (int off_usteps = 0; off_usteps <= 90; off_usteps += 90) {
+			rig_prepare(0);
+			rig.params.index_switch = side;
+			rig.params.switch_delay_us = 6000;
+			rig.switch_at_usteps[side] += direction * 25;
+			rig.switch_at_usteps[!side] -= direction * (25 + off_usteps);
+			rig_power_up();
+			rig_index();
+			run_to_ready();
+			TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
+			TEST_ASSERT_INT32_WITHIN(1, -direction * off_usteps,
+						 rig.controller->homing.span_error_usteps);
+		}
+	}
 }
 
 static void test_back_off_from_an_overtravel_switch(void)
 {
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		const int outward = lw_side_direction(side);
 
 		rig_prepare(outward * 8240);
@@ -309,6 +360,30 @@ static void test_both_overtravel_switches_are_no_place_to_start(void)
 	TEST_ASSERT_EQUAL_INT(LW_FAULT_BOTH_SWITCHES_ACTIVE, rig.controller->fault);
 }
 
+/** A broken wire of an overtravel switch, the carriage on the other limit switch. */
+static void test_the_overtravel_switch_is_named_when_the_carriage_is_at_the_other_end(void)
+{
+	FOR_EACH_SIDE(side) {
+		rig_prepare(-lw_side_direction(side) * 7900);
+		rig_power_up();
+		lw_controller_overtravel(rig.controller, side, true);
+		rig_index();
+		TEST_ASSERT_EQUAL_INT(side == LW_PLUS ? LW_FAULT_OVERTRAVEL_PLUS
+						      : LW_FAULT_OVERTRAVEL_MINUS,
+				      rig.controller->fault);
+
+		/* It comes there while it backs off, or not so far. */
+		for (int near = 0; near < 2; near++) {
+			rig_prepare(near ? 0 : -lw_side_direction(side) * 6000);
+			rig_power_up();
+			lw_controller_overtravel(rig.controller, side, true);
+			rig_index();
+			rig_run_to_fault(side == LW_PLUS ? LW_FAULT_OVERTRAVEL_PLUS
+							 : LW_FAULT_OVERTRAVEL_MINUS);
+		}
+	}
+}
+
 static void test_stop_in_every_state_of_an_index(void)
 {
 	for (int state = LW_STATE_BACKING_OFF; state <= LW_STATE_PARKING; state++) {
@@ -348,6 +423,26 @@ static void test_stop_at_any_moment_of_an_index_comes_to_rest(void)
 		TEST_ASSERT_EQUAL_UINT8(LW_EDGE_SOURCE_NONE, rig.controller->motion.source);
 		rig_place(7900);
 		rig_ticks(30);
+	}
+}
+
+/* A switch that triggers while the ramp down of a STOP runs must not complete the index. */
+static void test_stop_just_before_the_far_switch_leaves_no_index(void)
+{
+	for (int32_t usteps = -7400; usteps > -7840; usteps -= 10) {
+		rig_prepare(0);
+		rig_power_up();
+		rig_index();
+		rig_run_to(LW_STATE_SPAN_CHECK);
+		while (rig.carriage_usteps > usteps) {
+			rig_tick();
+		}
+		lw_controller_stop(rig.controller);
+		rig_ticks(400);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_UNINDEXED, rig.controller->state);
+		lw_controller_set_mode(rig.controller, LW_MODE_TRACK);
+		rig_ticks(400);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_UNINDEXED, rig.controller->state);
 	}
 }
 
@@ -400,6 +495,140 @@ static void test_index_with_a_dwell_parks_at_the_flange_before_it(void)
 	TEST_ASSERT_EQUAL_INT32(m + 23, lw_motion_m(&rig.controller->motion));
 }
 
+/** The carriage on both switches, of which one is stuck: no overtravel switch stands alone. */
+static void test_an_overtravel_switch_beside_its_limit_switch_is_not_named(void)
+{
+	FOR_EACH_SIDE(side) {
+		rig_prepare(lw_side_direction(side) * 8240);
+		rig.switches[!side] = RIG_SWITCH_ALWAYS;
+		rig_power_up();
+		lw_controller_overtravel(rig.controller, side, true);
+		rig_index();
+		TEST_ASSERT_EQUAL_INT(LW_FAULT_BOTH_SWITCHES_ACTIVE, rig.controller->fault);
+	}
+}
+
+static void test_a_far_switch_that_is_still_bouncing_at_its_tolerance_is_waited_for(void)
+{
+	/* 5 ms of debouncing are 21 microsteps, and the tolerance is 100. */
+	FOR_EACH_SIDE(side) {
+		const int direction = lw_side_direction(side);
+
+		rig_prepare(0);
+		rig.params.index_switch = side;
+		rig.params.switch_contacts = LW_SWITCH_CONTACTS_SINGLE_NO;
+		rig.switch_at_usteps[!side] -= direction * 95;
+		rig_power_up();
+		rig_index();
+		run_to_ready();
+		TEST_ASSERT_INT32_WITHIN(1, -direction * 95,
+					 rig.controller->homing.span_error_usteps);
+	}
+}
+
+/** Between two edges the place that a switch has told is not taken yet. */
+static void test_an_index_whose_edges_are_slower_than_ticks(void)
+{
+	rig_prepare(7000);
+	rig_power_up();
+	rig_index();
+	rig_run_to(LW_STATE_SEEKING);
+	rig_follow_to(7800, 1, 1000);
+	rig.params.index_rate_edges_per_s = 300;
+	rig_run_to(LW_STATE_INDEX_REVERSAL);
+	rig_ticks(2000);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_INDEX_REVERSAL, rig.controller->state);
+	rig.params.index_rate_edges_per_s = 10000;
+	run_to_ready();
+	TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
+}
+
+static void test_a_span_at_its_tolerance_is_within_it(void)
+{
+	FOR_EACH_SIDE(side) {
+		for (int way = -1; way <= 1; way += 2) {
+			bool met = false;
+
+			for (int32_t shift = 98; shift <= 102; shift++) {
+				int32_t error;
+
+				rig_prepare(0);
+				rig.params.index_switch = side;
+				rig.switch_at_usteps[!side] += way * shift;
+				rig_power_up();
+				rig_index();
+				rig.drum_edges_per_s = 1000;
+				rig_run_to(LW_STATE_SPAN_CHECK);
+				while (rig.controller->state == LW_STATE_SPAN_CHECK) {
+					rig_tick();
+				}
+				error = way * rig.controller->homing.span_error_usteps;
+				met |= error == 100;
+				TEST_ASSERT_EQUAL_INT(error <= 100 ? LW_STATE_PARKING
+								   : LW_STATE_FAULT,
+						      rig.controller->state);
+			}
+			TEST_ASSERT_TRUE(met);
+		}
+	}
+}
+
+static void test_parking_at_a_position_rests_in_no_reversal_on_the_way(void)
+{
+	FOR_EACH_SIDE(side) {
+		rig_prepare(0);
+		rig.params.index_switch = side;
+		rig.params.park_at = LW_PARK_AT_POSITION;
+		rig.params.dwell_plus_millirev = 3000;
+		rig.params.dwell_minus_millirev = 3000;
+		rig.params.breaker_millirev = 1000;
+		rig.params.breaker_cycles = 4;
+		rig_power_up();
+		rig_index();
+		rig_run_to(LW_STATE_PARKING);
+		rig.drum_edges_per_s = 1000;
+		while (rig.controller->state == LW_STATE_PARKING) {
+			const struct lw_law *law = &rig.controller->motion.law;
+
+			rig_tick();
+			TEST_ASSERT_TRUE(law->dwell_edges == 0);
+		}
+		TEST_ASSERT_EQUAL_UINT32(0, rig.controller->motion.law.dwells);
+		TEST_ASSERT_EQUAL_UINT32(0, rig.controller->motion.law.breaker_cycles);
+	}
+}
+
+static void test_an_index_begins_the_ribbon_breaker_anew(void)
+{
+	rig.params.breaker_millirev = 1000;
+	rig.params.breaker_cycles = 5;
+	rig_track();
+	rig_drive(100000);
+	TEST_ASSERT_TRUE(rig.controller->motion.law.cycle_plus > 0 &&
+			 rig.controller->motion.law.cycle_minus > 0);
+	rig_rest();
+	rig_index();
+	run_to_ready();
+	TEST_ASSERT_EQUAL_UINT32(0, rig.controller->motion.law.cycle_plus);
+	TEST_ASSERT_EQUAL_UINT32(0, rig.controller->motion.law.cycle_minus);
+}
+
+/** With a wide tolerance the far reversal turns the carriage round before it is too far. */
+static void test_no_far_switch_on_the_way_to_the_reversal_and_back(void)
+{
+	FOR_EACH_SIDE(side) {
+		rig_prepare(0);
+		rig.params.index_switch = side;
+		rig.params.span_tolerance_um = 5000;
+		rig.switches[!side] = RIG_SWITCH_NEVER;
+		rig_power_up();
+		rig_index();
+		rig_run_to_fault(LW_FAULT_INDEX_SPAN);
+		TEST_ASSERT_INT32_WITHIN(2, -lw_side_direction(side) * (8000 + 247),
+					 rig.carriage_usteps);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -407,6 +636,7 @@ int main(void)
 	RUN_TEST(test_a_trigger_on_the_last_microstep_of_the_ramp);
 	RUN_TEST(test_states_of_an_index_in_order);
 	RUN_TEST(test_index_clears_los_flags_and_the_fault);
+	RUN_TEST(test_without_ticks_the_edge_timer_moves_nothing_after_50_ms);
 	RUN_TEST(test_no_switch_within_the_travel);
 	RUN_TEST(test_no_switch_because_nothing_moves);
 	RUN_TEST(test_wrong_switch_first);
@@ -417,13 +647,23 @@ int main(void)
 	RUN_TEST(test_the_switch_does_not_release);
 	RUN_TEST(test_span_of_the_switches);
 	RUN_TEST(test_span_trigger_just_beyond_the_tolerance_in_one_tick);
+	RUN_TEST(test_late_switches_are_where_they_were_reached);
 	RUN_TEST(test_back_off_from_an_overtravel_switch);
 	RUN_TEST(test_backing_off_leaves_room_for_the_ramp_and_no_more);
 	RUN_TEST(test_both_overtravel_switches_are_no_place_to_start);
+	RUN_TEST(test_the_overtravel_switch_is_named_when_the_carriage_is_at_the_other_end);
 	RUN_TEST(test_stop_in_every_state_of_an_index);
 	RUN_TEST(test_stop_at_any_moment_of_an_index_comes_to_rest);
+	RUN_TEST(test_stop_just_before_the_far_switch_leaves_no_index);
 	RUN_TEST(test_stop_in_a_dwell_stops_at_once);
 	RUN_TEST(test_index_with_a_single_contact);
 	RUN_TEST(test_index_with_a_dwell_parks_at_the_flange_before_it);
+	RUN_TEST(test_an_overtravel_switch_beside_its_limit_switch_is_not_named);
+	RUN_TEST(test_a_far_switch_that_is_still_bouncing_at_its_tolerance_is_waited_for);
+	RUN_TEST(test_an_index_whose_edges_are_slower_than_ticks);
+	RUN_TEST(test_a_span_at_its_tolerance_is_within_it);
+	RUN_TEST(test_parking_at_a_position_rests_in_no_reversal_on_the_way);
+	RUN_TEST(test_an_index_begins_the_ribbon_breaker_anew);
+	RUN_TEST(test_no_far_switch_on_the_way_to_the_reversal_and_back);
 	return UNITY_END();
 }

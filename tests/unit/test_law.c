@@ -1,6 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The control law: properties P1 to P8 of doc/control-law.md, and the dwell. */
 #include <unity.h>
 
+#include "cases.h"
 #include "law_check.h"
 
 /** Sets of Ka, Nr, L+ and L-: the example, the extremes of the slope, the smallest sweep. */
@@ -36,6 +38,14 @@ static void use_dwell(uint32_t plus_edges, uint32_t minus_edges)
 	lw_law_use(&law, &window);
 }
 
+/** And a dwell that grows and shrinks by cycle. */
+static void use_breaker(uint32_t edges, uint32_t cycles)
+{
+	window.breaker_edges = edges;
+	window.breaker_cycles = cycles;
+	lw_law_use(&law, &window);
+}
+
 /** One edge, with the properties that hold on every edge. */
 static void edge(int dd)
 {
@@ -67,6 +77,7 @@ void setUp(void)
 
 void tearDown(void)
 {
+	cases_end();
 }
 
 /** The paper's block diagram as it is drawn, for any dd; comparators, multiplexers, integrators. */
@@ -128,6 +139,10 @@ static void test_p2_every_state_of_the_pattern_is_undone(void)
 		for (uint32_t dwell_edges = 0; dwell_edges < 3; dwell_edges++) {
 			use_set(i);
 			use_dwell(dwell_edges, 2 * dwell_edges);
+			/* Also of one with a breaker, whose period is so many times as long. */
+			if (i >= 3 && dwell_edges < 2) {
+				use_breaker(5, 3 + dwell_edges);
+			}
 			for (uint32_t edges = period_edges(); edges > 0; edges--) {
 				assert_undone();
 				edge(1);
@@ -240,6 +255,7 @@ static void test_random_directions_stay_on_the_orbit_and_can_be_retraced(void)
 	for (size_t i = 0; i < SET_COUNT; i++) {
 		use_set(i);
 		use_dwell((uint32_t)i % 3, (uint32_t)i % 4);
+		use_breaker((uint32_t)i * 7, (uint32_t)i % 5);
 
 		const struct lw_law start = law;
 		struct lw_law straight = law;
@@ -311,7 +327,7 @@ static void check_rest(int dd, uint32_t dwell_edges)
 
 static void test_dwell_rests_as_long_backward_as_forward(void)
 {
-	for (int side = -1; side <= 1; side += 2) {
+	FOR_BOTH_WAYS(side) {
 		const uint32_t dwell_edges = side > 0 ? 5 : 7;
 
 		use_set(0);
@@ -335,6 +351,176 @@ static void test_dwell_rests_as_long_backward_as_forward(void)
 	}
 }
 
+/** To the far point of a side, in direction dd, and edges at rest there. */
+static uint32_t rest_at(int side, int dd)
+{
+	uint32_t edges = 0;
+
+	do {
+		edge(dd);
+	} while (!(law.u == 0 && lw_law_region(&window, lw_law_m(&law)) == -side));
+	do {
+		edge(dd);
+		edges++;
+	} while (law.u == 0);
+	return edges - 1;
+}
+
+static void test_the_breaker_goes_up_and_down_by_cycle_at_both_sides(void)
+{
+	/* What 100 edges over 8 cycles, 7 over 5 and 3 over 2 add to 2 at plus and 9 at minus. */
+	static const struct {
+		uint32_t edges;
+		uint32_t cycles;
+		uint32_t adds[8];
+	} breakers[] = {{100, 8, {0, 25, 50, 75, 100, 75, 50, 25}},
+			{7, 5, {0, 3, 7, 7, 3}},
+			{3, 2, {0, 3}}};
+
+	for (size_t b = 0; b < 3; b++) {
+		const uint32_t cycles = breakers[b].cycles;
+
+		use_set(4);
+		use_dwell(2, 9);
+		use_breaker(breakers[b].edges, cycles);
+
+		const struct lw_law start = law;
+
+		for (uint32_t k = 0; k < 3 * cycles; k++) {
+			const uint32_t adds = breakers[b].adds[k % cycles];
+
+			TEST_ASSERT_EQUAL_UINT32(2 + adds, rest_at(1, 1));
+			TEST_ASSERT_EQUAL_UINT32(9 + adds, rest_at(-1, 1));
+		}
+		TEST_ASSERT_EQUAL_UINT32(0, law.cycle_plus);
+		/* Back on the same path, and beyond where it began. */
+		for (uint32_t k = 4 * cycles; k > 0; k--) {
+			const uint32_t adds = breakers[b].adds[(k - 1) % cycles];
+
+			TEST_ASSERT_EQUAL_UINT32(9 + adds, rest_at(-1, -1));
+			TEST_ASSERT_EQUAL_UINT32(2 + adds, rest_at(1, -1));
+		}
+		for (uint32_t k = 0; k < cycles; k++) {
+			rest_at(1, 1);
+			rest_at(-1, 1);
+		}
+		while (!law_same(&law, &start)) {
+			edge(1); /* at most to the next far point, or this never ends */
+			TEST_ASSERT_EQUAL_UINT32(0, law.cycle_plus);
+		}
+	}
+}
+
+static void test_a_breaker_of_less_than_two_cycles_adds_nothing(void)
+{
+	for (uint32_t cycles = 0; cycles < 2; cycles++) {
+		use_set(4);
+		use_breaker(50, cycles);
+		for (int k = 0; k < 3; k++) {
+			TEST_ASSERT_EQUAL_UINT32(0, rest_at(1, 1));
+			TEST_ASSERT_EQUAL_UINT32(0, rest_at(-1, 1));
+		}
+		TEST_ASSERT_EQUAL_UINT32(0, rest_at(-1, -1));
+		TEST_ASSERT_EQUAL_UINT32(0, law.cycle_plus | law.cycle_minus);
+	}
+}
+
+static void test_the_largest_breaker_does_not_overflow(void)
+{
+	use_set(4);
+	use_breaker(LW_LAW_BREAKER_EDGES_MAX, LW_LAW_BREAKER_CYCLES_MAX);
+	law.cycle_plus = LW_LAW_BREAKER_CYCLES_MAX / 2;
+	TEST_ASSERT_EQUAL_UINT32(LW_LAW_BREAKER_EDGES_MAX, rest_at(1, 1));
+}
+
+static void test_another_window_keeps_the_cycle_another_breaker_begins_anew(void)
+{
+	use_set(4);
+	use_breaker(20, 4);
+	rest_at(1, 1);
+	rest_at(-1, 1);
+	rest_at(1, 1);
+	window.sweep_end += LW_USTEP; /* a trim */
+	lw_law_use(&law, &window);
+	TEST_ASSERT_EQUAL_UINT32(2, law.cycle_plus);
+	TEST_ASSERT_EQUAL_UINT32(1, law.cycle_minus);
+	use_breaker(20, 2);
+	TEST_ASSERT_EQUAL_UINT32(0, law.cycle_plus);
+	TEST_ASSERT_EQUAL_UINT32(0, law.cycle_minus);
+}
+
+static void test_the_breaker_begins_anew_when_told(void)
+{
+	use_set(4);
+	use_breaker(20, 4);
+	for (int k = 0; k < 2; k++) {
+		rest_at(1, 1);
+		rest_at(-1, 1);
+	}
+	lw_law_begin_cycles(&law);
+	TEST_ASSERT_EQUAL_UINT32(0, rest_at(1, 1));
+	TEST_ASSERT_EQUAL_UINT32(0, rest_at(-1, 1));
+	TEST_ASSERT_EQUAL_UINT32(10, rest_at(1, 1));
+	TEST_ASSERT_EQUAL_UINT32(10, rest_at(-1, 1));
+}
+
+static void test_the_lowest_place_lies_before_the_sweep(void)
+{
+	use_set(0);
+	law = lw_law_at(&window, INT32_MIN, 0);
+	use_dwell(0, 1);
+	lw_law_edge(&law, 1); /* the dwell of the minus side */
+	TEST_ASSERT_EQUAL_INT32(0, law.u);
+	TEST_ASSERT_EQUAL_UINT32(1, law.dwell_edges);
+	lw_law_edge(&law, 1);
+	TEST_ASSERT_EQUAL_INT32(window.ka, law.u);
+}
+
+/** The law in the sweep's place `m`, its short way open. */
+static void open_at(int32_t m, int32_t u)
+{
+	law = lw_law_at(&window, m, u);
+	law.open_span = law.span;
+}
+
+static void test_edges_are_taken_together_up_to_the_first_and_the_last_place_of_the_sweep(void)
+{
+	int32_t steps;
+
+	use_set(0);
+	open_at(window.sweep_begin + window.ks, window.ks);
+	TEST_ASSERT_TRUE(lw_law_short_edges(&law, -1, &steps));
+	TEST_ASSERT_EQUAL_INT32(window.sweep_begin, lw_law_m(&law));
+	open_at(window.sweep_end - 1 - window.ks, window.ks);
+	TEST_ASSERT_TRUE(lw_law_short_edges(&law, 1, &steps));
+	TEST_ASSERT_EQUAL_INT32(window.sweep_end - 1, lw_law_m(&law));
+
+	/* One further out the slope changes: to there, and from there. */
+	open_at(window.sweep_begin + window.ks - 1, window.ks);
+	TEST_ASSERT_FALSE(lw_law_short_edges(&law, -1, &steps));
+	open_at(window.sweep_end - window.ks, -window.ks);
+	TEST_ASSERT_FALSE(lw_law_short_edges(&law, -1, &steps));
+	open_at(window.sweep_end, window.ka - window.ks);
+	TEST_ASSERT_FALSE(lw_law_short_edges(&law, 1, &steps));
+	TEST_ASSERT_EQUAL_INT32(window.sweep_end, lw_law_m(&law));
+}
+
+static void test_edges_to_the_next_step_are_exact_at_the_smallest_slope(void)
+{
+	window = law_window(1, 1, 8, -8);
+	for (int32_t fraction = 0; fraction < LW_USTEP; fraction += 21845) {
+		open_at(fraction, 1);
+		TEST_ASSERT_EQUAL_UINT32(LW_USTEP - fraction, lw_law_edges_to_step(&law, 1));
+		TEST_ASSERT_EQUAL_UINT32(fraction + 1, lw_law_edges_to_step(&law, -1));
+	}
+	open_at(window.sweep_end - 1, 1);
+	TEST_ASSERT_EQUAL_UINT32(1, lw_law_edges_to_step(&law, 1));
+	TEST_ASSERT_EQUAL_UINT32(LW_USTEP, lw_law_edges_to_step(&law, -1));
+	/* Outside of the sweep it does not know. */
+	open_at(window.sweep_end, 1);
+	TEST_ASSERT_EQUAL_UINT32(1, lw_law_edges_to_step(&law, 1));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -348,5 +534,13 @@ int main(void)
 	RUN_TEST(test_p8_the_steepest_and_longest_reversal_fits);
 	RUN_TEST(test_dwell_is_exact_to_one_edge_at_both_sides);
 	RUN_TEST(test_dwell_rests_as_long_backward_as_forward);
+	RUN_TEST(test_the_breaker_goes_up_and_down_by_cycle_at_both_sides);
+	RUN_TEST(test_a_breaker_of_less_than_two_cycles_adds_nothing);
+	RUN_TEST(test_the_largest_breaker_does_not_overflow);
+	RUN_TEST(test_another_window_keeps_the_cycle_another_breaker_begins_anew);
+	RUN_TEST(test_the_breaker_begins_anew_when_told);
+	RUN_TEST(test_the_lowest_place_lies_before_the_sweep);
+	RUN_TEST(test_edges_are_taken_together_up_to_the_first_and_the_last_place_of_the_sweep);
+	RUN_TEST(test_edges_to_the_next_step_are_exact_at_the_smallest_slope);
 	return UNITY_END();
 }

@@ -1,7 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Debouncing of a limit switch. */
 #include <unity.h>
 
-#include "lw/limit_switch.h"
+#include "lw/control/limit_switch.h"
 
 static struct lw_limit_switch_config config;
 static struct lw_limit_switch limit;
@@ -173,6 +174,34 @@ static void check_single(bool no_when_actuated, bool nc_when_actuated)
 	TEST_ASSERT_FALSE(limit.wiring_fault);
 }
 
+/* Nothing tells which closure was the switch's: only the one that lasts is sure. */
+static void check_chatter(bool no_when_actuated, bool nc_when_actuated)
+{
+	const uint32_t triggers = limit.triggers;
+
+	for (int32_t pos_usteps = 10; pos_usteps < 1010; pos_usteps += 20) {
+		contacts(no_when_actuated, nc_when_actuated, pos_usteps, 3000);
+		contacts(!no_when_actuated, !nc_when_actuated, pos_usteps + 10, 3000);
+	}
+	tick(0);
+	TEST_ASSERT_TRUE_MESSAGE(limit.wiring_fault, "chatter is told");
+	contacts(no_when_actuated, nc_when_actuated, 1010, 3000);
+	tick(5000);
+	TEST_ASSERT_TRUE(limit.active);
+	TEST_ASSERT_FALSE(limit.wiring_fault);
+	TEST_ASSERT_TRUE(lw_limit_switch_take(&limit, &trigger));
+	TEST_ASSERT_EQUAL_INT32(1010, trigger.pos_usteps);
+	TEST_ASSERT_EQUAL_UINT32(triggers + 1, limit.triggers);
+}
+
+static void test_single_contact_that_chatters(void)
+{
+	use_single(LW_SWITCH_CONTACTS_SINGLE_NO);
+	check_chatter(true, true);
+	use_single(LW_SWITCH_CONTACTS_SINGLE_NC);
+	check_chatter(false, false);
+}
+
 static void test_single_no(void)
 {
 	use_single(LW_SWITCH_CONTACTS_SINGLE_NO);
@@ -215,6 +244,7 @@ int main(void)
 	RUN_TEST(test_pair_releases_on_the_first_closure_of_nc);
 	RUN_TEST(test_pair_contradicting_contacts_change_nothing);
 	RUN_TEST(test_pair_both_open_or_both_closed_for_too_long);
+	RUN_TEST(test_single_contact_that_chatters);
 	RUN_TEST(test_single_no);
 	RUN_TEST(test_single_nc);
 	RUN_TEST(test_single_held_from_power_up_stays_actuated);

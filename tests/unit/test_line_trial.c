@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Line settings on trial: everything over the slave's line, as a master sees it. */
 #include <string.h>
 
 #include <unity.h>
 
-#include "lw/rtu.h"
+#include "lw/modbus/rtu.h"
 #include "rig.h"
 
 #define OLD_UNIT  1

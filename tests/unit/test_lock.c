@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The write lock by itself: codes, times, and how guessing is slowed down. */
 #include <errno.h>
 
 #include <unity.h>
 
-#include "lw/lock.h"
+#include "lw/device/lock.h"
 #include "lw/map.h"
 
 #define CODE 4711u

@@ -1,9 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The event log. */
 #include <errno.h>
 
 #include <unity.h>
 
-#include "lw/log.h"
+#include "lw/storage/log.h"
 
 static struct lw_log event_log;
 

@@ -1,8 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The motion as the edge interrupts see it. */
 #include <unity.h>
 
+#include "cases.h"
 #include "law_check.h"
-#include "lw/motion.h"
+#include "lw/motion/motion.h"
 
 #define KA 23
 #define NR 1187
@@ -18,13 +20,24 @@ void setUp(void)
 	window = law_window(KA, NR, 8000, -8000);
 	other = law_window(KA, NR, 7000, -7000);
 	lw_motion_init(&motion, &window);
-	lw_motion_place(&motion, &window, 0, KS);
+	lw_motion_set_position(&motion, &window, 0, KS);
 	lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
 	steps_sum = 0;
 }
 
 void tearDown(void)
 {
+	cases_end();
+}
+
+/** Elsewhere, between two edges. */
+static void place(const struct lw_law_window *to, int32_t m, int32_t u)
+{
+	const enum lw_edge_source source = motion.source;
+
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_NONE);
+	lw_motion_set_position(&motion, to, m, u);
+	lw_motion_set_source(&motion, source);
 }
 
 static void edges(int dd, int count)
@@ -162,7 +175,7 @@ static void test_steps_equal_the_change_of_position_less_corrections(void)
 static void test_a_window_waits_for_the_sweep_of_both(void)
 {
 	/* Between the two reversal points: in the sweep of the old one only. */
-	lw_motion_place(&motion, motion.window, 7500 * LW_USTEP, motion.law.u);
+	place(motion.window, 7500 * LW_USTEP, motion.law.u);
 	request(LW_MOTION_REQUEST_WINDOW, &other, 0);
 	edges(1, 100);
 	TEST_ASSERT_EQUAL_PTR(&window, motion.window);
@@ -180,7 +193,7 @@ static void test_a_window_waits_for_the_sweep_of_both(void)
 
 static void test_a_wider_window_waits_for_the_end_of_the_reversal(void)
 {
-	lw_motion_place(&motion, &other, 0, KS);
+	place(&other, 0, KS);
 	enter_reversal(-1);
 	request(LW_MOTION_REQUEST_WINDOW, &window, 0);
 	for (int i = 1; i < 2 * NR; i++) {
@@ -208,7 +221,7 @@ static void check_clamp(int side)
 	const int32_t border = side > 0 ? window.sweep_end : window.sweep_begin;
 
 	setUp();
-	lw_motion_place(&motion, motion.window, side * 7950 * LW_USTEP, motion.law.u);
+	place(motion.window, side * 7950 * LW_USTEP, motion.law.u);
 	motion.law.u = side * KS;
 	request(LW_MOTION_REQUEST_CORRECTION, NULL, side * 200);
 	edges(1, 1);
@@ -239,7 +252,7 @@ static void test_a_correction_beyond_the_border_keeps_its_rest(void)
 static void test_rebase_takes_window_and_position_on_the_next_edge(void)
 {
 	window.sweep_end = INT32_MAX;
-	lw_motion_place(&motion, &window, 20000 * LW_USTEP, motion.law.u);
+	place(&window, 20000 * LW_USTEP, motion.law.u);
 	request(LW_MOTION_REQUEST_REBASE, &other, -14000);
 	edges(1, 1);
 	TEST_ASSERT_EQUAL_PTR(&other, motion.window);
@@ -255,7 +268,7 @@ static void check_rebase(int32_t m, int32_t correction_usteps)
 	setUp();
 	window.sweep_begin = INT32_MIN + LW_USTEP;
 	window.sweep_end = INT32_MAX;
-	lw_motion_place(&motion, motion.window, m, motion.law.u);
+	place(motion.window, m, motion.law.u);
 	request(LW_MOTION_REQUEST_REBASE, &other, correction_usteps);
 	edges(1, 1);
 	TEST_ASSERT_EQUAL_INT(0, lw_law_region(&other, lw_motion_m(&motion)));
@@ -321,7 +334,7 @@ static void test_a_blocked_side_gets_no_steps(void)
 
 static void test_timer_edges_stop_at_rest_at_the_side_asked_for(void)
 {
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		const uint8_t bit = side ? LW_MOTION_MINUS : LW_MOTION_PLUS;
 
 		setUp();
@@ -365,7 +378,7 @@ static void test_the_short_way_does_what_the_long_way_does(void)
 		window = law_window(sets[i].ka, sets[i].nr, sets[i].plus_usteps,
 				    sets[i].minus_usteps);
 		/* Near a reversal: the longest sweep is more than a run. */
-		lw_motion_place(&motion, &window, window.sweep_end - 1, ks);
+		place(&window, window.sweep_end - 1, ks);
 		lw_motion_set_source(&motion, LW_EDGE_SOURCE_NONE);
 		lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
 		long_way = motion;
@@ -416,7 +429,7 @@ static void test_whatever_is_asked_for_closes_the_short_way(void)
 	edges(1, 2);
 	TEST_ASSERT_EQUAL_UINT32(0, motion.law.open_span);
 	window.dwell_plus_edges = 1;
-	lw_motion_place(&motion, &window, 0, KS);
+	place(&window, 0, KS);
 	lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
 	edges(1, 2);
 	TEST_ASSERT_EQUAL_UINT32(0, motion.law.open_span);
@@ -450,6 +463,138 @@ static void test_counters_go_on_beyond_32_bits(void)
 	TEST_ASSERT_EQUAL_INT64(-3, lw_motion_read(&motion).pattern_edges);
 }
 
+/** One edge into the place `m` with slope `u`, of the plus reversal on its way back. */
+static void come_back_to(int32_t m, int32_t u)
+{
+	place(&window, m - u, u + KA);
+	edges(1, 1);
+	TEST_ASSERT_EQUAL_INT32(m, lw_motion_m(&motion));
+	TEST_ASSERT_EQUAL_INT32(u, motion.law.u);
+}
+
+static void test_edges_taken_together_step_or_stand_as_one_by_one(void)
+{
+	int32_t steps = 99;
+
+	edges(1, 1);
+	TEST_ASSERT_TRUE(lw_motion_encoder_edges(&motion, 100, &steps));
+	TEST_ASSERT_EQUAL_INT32(101 * KS / LW_USTEP, steps);
+	come_back_to(window.sweep_end, KA - KS);
+	TEST_ASSERT_FALSE(lw_motion_encoder_edges(&motion, 1, &steps));
+
+	lw_motion_set_source(&motion, LW_EDGE_SOURCE_NONE);
+	steps = 99;
+	TEST_ASSERT_TRUE(lw_motion_encoder_edges(&motion, 7, &steps));
+	TEST_ASSERT_EQUAL_INT32(0, steps);
+	TEST_ASSERT_EQUAL_UINT32(7, motion.unfollowed_edges);
+}
+
+static void test_the_law_is_sound_at_every_place_of_the_pattern(void)
+{
+	for (int i = 0; i < 200000; i++) {
+		edges(1, 1);
+		TEST_ASSERT_TRUE(lw_motion_is_sound(&motion));
+	}
+	/* The reversal begins at the sweep's end: there the slope is another. */
+	come_back_to(window.sweep_end, KA - KS);
+	TEST_ASSERT_TRUE(lw_motion_is_sound(&motion));
+	come_back_to(window.sweep_end - 1, -KS);
+	TEST_ASSERT_TRUE(lw_motion_is_sound(&motion));
+}
+
+static void test_a_mended_law_follows_the_drum_again(void)
+{
+	static const int32_t spoilt[] = {1 - KS, KS - 1, -1, 0, 1};
+	static const int32_t mended[] = {-KS, KS, -KS, KS, KS};
+
+	for (int i = 0; i < 5; i++) {
+		place(&window, 0, spoilt[i]);
+		TEST_ASSERT_FALSE(lw_motion_is_sound(&motion));
+		lw_motion_mend(&motion, &other);
+		TEST_ASSERT_EQUAL_PTR(&other, motion.window);
+		TEST_ASSERT_TRUE(lw_motion_is_sound(&motion));
+		TEST_ASSERT_EQUAL_INT32(mended[i], motion.law.u);
+		steps_sum = 0;
+		edges(1, 100);
+		TEST_ASSERT_EQUAL_INT32(lw_law_pos_usteps(100 * mended[i]), steps_sum);
+	}
+}
+
+static void test_the_smallest_slope_change_tells_its_side(void)
+{
+	window = law_window(1, 3, 10, -10);
+	FOR_EACH_SIDE(side) {
+		place(&window, side ? window.sweep_begin - 1 : window.sweep_end, side ? -3 : 3);
+		edges(1, 1);
+		TEST_ASSERT_FALSE(turned(side ? LW_MOTION_PLUS : LW_MOTION_MINUS));
+		TEST_ASSERT_TRUE(turned(side ? LW_MOTION_MINUS : LW_MOTION_PLUS));
+	}
+}
+
+static void test_a_correction_that_just_fits_is_made_whole(void)
+{
+	FOR_EACH_SIDE(side) {
+		const int32_t way_usteps = side ? -3 : 3;
+		const int32_t last = side ? window.sweep_begin : window.sweep_end - 1;
+
+		place(&window, last - way_usteps * LW_USTEP - KS, KS);
+		request(LW_MOTION_REQUEST_CORRECTION, NULL, way_usteps);
+		edges(1, 1);
+		TEST_ASSERT_EQUAL_INT32(last, lw_motion_m(&motion));
+		TEST_ASSERT_EQUAL_UINT8(0, motion.requests);
+
+		/* One more would leave the sweep. */
+		place(&window, last - way_usteps * LW_USTEP - KS, KS);
+		request(LW_MOTION_REQUEST_CORRECTION, NULL, side ? -4 : 4);
+		edges(1, 1);
+		TEST_ASSERT_EQUAL_INT32(last, lw_motion_m(&motion));
+		TEST_ASSERT_EQUAL_INT32(side ? -1 : 1, motion.request_correction_usteps);
+	}
+}
+
+static void test_rebase_to_the_very_border(void)
+{
+	for (int32_t usteps = -2; usteps <= 2; usteps++) {
+		for (int32_t offset = -1; offset <= 1; offset++) {
+			const int32_t by = usteps * LW_USTEP + offset - KS;
+
+			check_rebase(other.sweep_end + by, 0);
+			check_rebase(other.sweep_begin + by, 0);
+		}
+	}
+}
+
+static void test_swap_leaves_the_place_alone_and_a_correction_to_the_next_edge(void)
+{
+	request(LW_MOTION_REQUEST_SWAP | LW_MOTION_REQUEST_CORRECTION, &other, 5);
+	edges(1, 1);
+	TEST_ASSERT_EQUAL_PTR(&other, motion.window);
+	TEST_ASSERT_EQUAL_INT32(KS, lw_motion_m(&motion));
+	edges(1, 1);
+	TEST_ASSERT_EQUAL_INT32(2 * KS + 5 * LW_USTEP, lw_motion_m(&motion));
+}
+
+static void test_steps_of_a_cam_are_counted_either_way(void)
+{
+	const struct lw_cam_scale scale = lw_cam_scale(1, 1, 1, 1, 10);
+
+	for (int32_t slope = 1; slope <= 3; slope += 2) {
+		const struct lw_cam_table hill = {.row_count = 3,
+						  .rows = {{0, 0}, {100, 100 * slope}, {200}}};
+
+		setUp();
+		motion.cam = (struct lw_cam_motion){.on = true, .steps_max = 4};
+		lw_cam_start(&motion.cam.cam, &hill, &scale, 0, 0);
+		edges(1, 50);
+		TEST_ASSERT_EQUAL_INT32(50 * slope, steps_sum);
+		TEST_ASSERT_EQUAL_UINT32(50 * slope, motion.steps);
+		TEST_ASSERT_EQUAL_INT32(1, motion.last_step);
+		edges(-1, 20);
+		TEST_ASSERT_EQUAL_UINT32(70 * slope, motion.steps);
+		TEST_ASSERT_EQUAL_INT32(-1, motion.last_step);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -472,5 +617,13 @@ int main(void)
 	RUN_TEST(test_the_short_way_does_what_the_long_way_does);
 	RUN_TEST(test_whatever_is_asked_for_closes_the_short_way);
 	RUN_TEST(test_counters_go_on_beyond_32_bits);
+	RUN_TEST(test_edges_taken_together_step_or_stand_as_one_by_one);
+	RUN_TEST(test_the_law_is_sound_at_every_place_of_the_pattern);
+	RUN_TEST(test_a_mended_law_follows_the_drum_again);
+	RUN_TEST(test_the_smallest_slope_change_tells_its_side);
+	RUN_TEST(test_a_correction_that_just_fits_is_made_whole);
+	RUN_TEST(test_rebase_to_the_very_border);
+	RUN_TEST(test_swap_leaves_the_place_alone_and_a_correction_to_the_next_edge);
+	RUN_TEST(test_steps_of_a_cam_are_counted_either_way);
 	return UNITY_END();
 }

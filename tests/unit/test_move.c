@@ -1,8 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Moves from rest to rest. */
 #include <unity.h>
 
+#include "cases.h"
 #include "law_check.h"
-#include "lw/move.h"
+#include "lw/motion/move.h"
 
 static const struct {
 	int32_t ka;
@@ -17,6 +19,7 @@ void setUp(void)
 
 void tearDown(void)
 {
+	cases_end();
 }
 
 /** Make a planned move; the slope stays within Ks and in its direction; one step per edge. */
@@ -42,7 +45,7 @@ static void check_move(size_t slope, int32_t from_q16, int32_t target_usteps)
 	const int32_t ks = ka * slopes[slope].nr;
 	const int64_t way = (int64_t)target_usteps * LW_USTEP - from_q16;
 	struct lw_law_window window;
-	const bool far = way >= LW_USTEP || way <= -LW_USTEP;
+	const bool far = way >= LW_USTEP - 1 || way <= 1 - LW_USTEP;
 
 	TEST_ASSERT_EQUAL(far, lw_move_to(from_q16, &window, ka, slopes[slope].nr, target_usteps));
 	if (far) {
@@ -92,6 +95,8 @@ static void test_less_than_a_microstep_away_is_there_already(void)
 	check_move(0, 1, 1);
 	check_move(0, 65535, 0);
 	check_move(0, -65535, 0);
+	check_move(0, 65534, 0);
+	check_move(0, -65534, 0);
 	check_move(0, 65536, 0);
 }
 
@@ -112,7 +117,7 @@ static void test_an_endless_run_reaches_ks_at_zero_and_keeps_it(void)
 		const int32_t ka = slopes[slope].ka;
 		const int32_t nr = slopes[slope].nr;
 
-		for (int direction = -1; direction <= 1; direction += 2) {
+		FOR_BOTH_WAYS(direction) {
 			struct lw_law_window window;
 			const int32_t m = lw_move_run(&window, ka, nr, direction);
 			struct lw_law law = lw_law_at(&window, m, 0);
@@ -131,7 +136,7 @@ static void test_an_endless_run_reaches_ks_at_zero_and_keeps_it(void)
 
 static void test_halting_from_any_point_of_a_move(void)
 {
-	for (int direction = -1; direction <= 1; direction += 2) {
+	FOR_BOTH_WAYS(direction) {
 		const int32_t target_usteps = direction * 1200;
 		struct lw_law_window window;
 
@@ -162,6 +167,42 @@ static void test_halting_from_any_point_of_a_move(void)
 	}
 }
 
+static void test_halting_goes_by_the_window_that_says_its_slope(void)
+{
+	static const int32_t slopes_q16[] = {1, -1, 23, -23, 65535, -65535};
+
+	for (size_t i = 0; i < sizeof(slopes_q16) / sizeof(slopes_q16[0]); i++) {
+		const int32_t u = slopes_q16[i];
+		struct lw_law_window window;
+		struct lw_law law;
+
+		lw_move_halt(u, &window, 1);
+		TEST_ASSERT_EQUAL_INT32(u < 0 ? -u : u, window.ks);
+		TEST_ASSERT_TRUE(INT32_MIN < window.sweep_begin);
+		TEST_ASSERT_TRUE(window.sweep_begin < window.sweep_end);
+		law = lw_law_at(&window, 0, u);
+		for (int32_t edges = window.ks; edges > 0; edges--) {
+			TEST_ASSERT_NOT_EQUAL(0, law.u);
+			lw_law_edge(&law, 1);
+		}
+		TEST_ASSERT_EQUAL_INT32(0, law.u);
+	}
+}
+
+static void test_a_move_into_a_microstep_begins_at_the_far_end_of_its_own(void)
+{
+	for (int32_t fraction = 0; fraction < LW_USTEP; fraction += 21845) {
+		struct lw_law_window window;
+		int32_t m = 40 * LW_USTEP + fraction;
+
+		TEST_ASSERT_TRUE(lw_move_into(&m, &window, 23, 1187, 50));
+		TEST_ASSERT_EQUAL_INT32(40 * LW_USTEP, m);
+		TEST_ASSERT_TRUE(lw_move_into(&m, &window, 23, 1187, 39));
+		TEST_ASSERT_EQUAL_INT32(40 * LW_USTEP + LW_USTEP - 1, m);
+		TEST_ASSERT_FALSE(lw_move_into(&m, &window, 23, 1187, 40));
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -171,5 +212,7 @@ int main(void)
 	RUN_TEST(test_a_short_way_is_done_at_a_lower_slope);
 	RUN_TEST(test_an_endless_run_reaches_ks_at_zero_and_keeps_it);
 	RUN_TEST(test_halting_from_any_point_of_a_move);
+	RUN_TEST(test_halting_goes_by_the_window_that_says_its_slope);
+	RUN_TEST(test_a_move_into_a_microstep_begins_at_the_far_end_of_its_own);
 	return UNITY_END();
 }

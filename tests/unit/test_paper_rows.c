@@ -1,10 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Where the paper does not hold: one test for each row of the table in doc/control-law.md. */
 #include <unity.h>
 
+#include "cases.h"
 #include "law_check.h"
-#include "lw/motion.h"
-#include "lw/move.h"
-#include "lw/params.h"
+#include "lw/motion/motion.h"
+#include "lw/motion/move.h"
+#include "lw/control/params.h"
 
 #define KA    23
 #define NR    1187
@@ -59,6 +61,7 @@ void setUp(void)
 
 void tearDown(void)
 {
+	cases_end();
 }
 
 static void test_paper_row_drum_backward_runs_away(void)
@@ -160,7 +163,7 @@ static void test_paper_row_indexing_ramp(void)
 	}
 	TEST_ASSERT_EQUAL_INT32(219, 100 * (int64_t)law.u / KS);
 
-	for (int direction = -1; direction <= 1; direction += 2) {
+	FOR_BOTH_WAYS(direction) {
 		law = lw_law_at(&window, lw_move_run(&window, KA, NR, direction), 0);
 		TEST_ASSERT_EQUAL_INT32(0, law.u);
 		for (int i = 0; i < NR; i++) {
@@ -237,7 +240,7 @@ static void test_paper_row_reindex_inside_a_reversal(void)
 
 	/* Held, and applied on the edge that leaves the reversal. */
 	lw_motion_init(&motion, &window);
-	lw_motion_place(&motion, &window, PLUS * LW_USTEP, KS);
+	lw_motion_set_position(&motion, &window, PLUS * LW_USTEP, KS);
 	lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
 	law = motion.law;
 	motion.request_correction_usteps = -300;

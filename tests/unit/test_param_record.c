@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stored form of a parameter set, and older forms of it. */
 #include <errno.h>
 #include <string.h>
@@ -5,7 +6,8 @@
 #include <unity.h>
 
 #include "law_check.h"
-#include "lw/param_record.h"
+#include "lw/bytes/crc32.h"
+#include "lw/storage/param_record.h"
 #include "record_schema_1.h"
 
 /* Room for one entry more. */

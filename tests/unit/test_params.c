@@ -1,11 +1,13 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* From millimetres to the law, and the check of a whole parameter set. */
 #include <errno.h>
 #include <string.h>
 
 #include <unity.h>
 
+#include "cases.h"
 #include "law_check.h"
-#include "lw/params.h"
+#include "lw/control/params.h"
 
 static struct lw_params params;
 static struct lw_derived derived;
@@ -22,6 +24,7 @@ void setUp(void)
 
 void tearDown(void)
 {
+	cases_end();
 }
 
 static void assert_accepted(void)
@@ -90,6 +93,29 @@ static void test_dwell_is_in_drum_revolutions(void)
 
 	TEST_ASSERT_EQUAL_UINT32(240, window.dwell_plus_edges);
 	TEST_ASSERT_EQUAL_UINT32(1, window.dwell_minus_edges);
+}
+
+static void test_the_breaker_is_in_drum_revolutions_and_off_without_either_number(void)
+{
+	params.breaker_millirev = 200;
+	assert_accepted();
+	TEST_ASSERT_EQUAL_UINT32(0, derived.breaker_edges);
+	TEST_ASSERT_EQUAL_UINT32(0, derived.breaker_cycles);
+	params.breaker_cycles = 8;
+	assert_accepted();
+	TEST_ASSERT_EQUAL_UINT32(576, derived.breaker_edges); /* 2880 * 0.2 */
+	TEST_ASSERT_EQUAL_UINT32(8, derived.breaker_cycles);
+	params.breaker_millirev = 0;
+	assert_accepted();
+	TEST_ASSERT_EQUAL_UINT32(0, derived.breaker_edges);
+	TEST_ASSERT_EQUAL_UINT32(0, derived.breaker_cycles);
+}
+
+static void test_the_drum_is_as_wide_as_from_far_point_to_far_point(void)
+{
+	assert_accepted();
+	/* 16,000 microsteps and twice 27301 * 593 / 65536, 10 um each. */
+	TEST_ASSERT_EQUAL_INT32(164941, lw_params_far_points_um(&params, &derived));
 }
 
 static void test_conversions_round_to_nearest(void)
@@ -362,6 +388,44 @@ static void test_reason_tolerance_beyond_flange(void)
 	assert_limit_is_the_border(&params.switch_tolerance_um, 0, 1);
 }
 
+static void test_reason_breaker_one_cycle(void)
+{
+	params.breaker_cycles = 1;
+	assert_refused(LW_REASON_BREAKER_ONE_CYCLE, LW_ADDRESS_BREAKER_CYCLES, 1, 2);
+	assert_limit_is_the_border(&params.breaker_cycles, 0, -1);
+}
+
+static void test_reason_packing_too_small(void)
+{
+	params.rope_packing_permille = 99;
+	assert_refused(LW_REASON_PACKING_TOO_SMALL, LW_ADDRESS_ROPE_PACKING_PERMILLE, 99, 100);
+	assert_limit_is_the_border(&params.rope_packing_permille, 0, -1);
+}
+
+static void test_reason_core_thinner_than_rope(void)
+{
+	params.rope_diameter_um = 5000;
+	params.drum_core_diameter_um = 4999;
+	assert_refused(LW_REASON_CORE_THINNER_THAN_ROPE, LW_ADDRESS_DRUM_CORE_DIAMETER_UM, 4999,
+		       5000);
+	assert_limit_is_the_border((int32_t *)&params.drum_core_diameter_um, 0, -1);
+}
+
+static void test_reason_drum_narrower_than_rope(void)
+{
+	params.overshoot_um = 1;
+	params.slope_tolerance_ppm = 5000;
+	params.switch_hysteresis_um = 100;
+	params.switch_tolerance_um = 100;
+	params.switch_minus_um = 70000;
+	params.reversal_minus_um = 69000;
+	params.centre_position_um = 75000;
+	params.rope_diameter_um = 11010;
+	assert_refused(LW_REASON_DRUM_NARROWER_THAN_ROPE, LW_ADDRESS_ROPE_DIAMETER_UM, 11010,
+		       11000);
+	assert_limit_is_the_border(&params.rope_diameter_um, 0, 1);
+}
+
 static void test_reason_too_few_edges(void)
 {
 	params.encoder_pulses_per_rev = 1;
@@ -396,6 +460,42 @@ static void test_reason_debounce_too_long(void)
 
 	params.switch_contacts = LW_SWITCH_CONTACTS_NO_NC_PAIR;
 	assert_accepted();
+}
+
+static void test_reason_switch_delay_too_long(void)
+{
+	/* 160 microsteps at 52,000 edges/s * 0.4166: 7.386 ms, however it is wired. */
+	for (int contacts = 0; contacts < 3; contacts++) {
+		params.switch_contacts = contacts;
+		params.switch_debounce_ms = 1;
+		params.switch_delay_us = 20000;
+		assert_refused(LW_REASON_SWITCH_DELAY_TOO_LONG, LW_ADDRESS_SWITCH_DELAY_US, 20000,
+			       7386);
+		params.switch_delay_us = 7386;
+		if (contacts == LW_SWITCH_CONTACTS_NO_NC_PAIR) {
+			assert_accepted();
+		}
+	}
+	/* A single contact is debounced on top of it. */
+	params.switch_delay_us = 3000;
+	params.switch_debounce_ms = 5;
+	assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 5, 4);
+	params.switch_debounce_ms = 4;
+	assert_accepted();
+
+	/* To the microsecond: 7 ms and 386 us fit, one more does not. */
+	params.switch_debounce_ms = 7;
+	params.switch_delay_us = 386;
+	assert_accepted();
+	params.switch_delay_us = 387;
+	assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 7, 6);
+	params.switch_delay_us = 390;
+	assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 7, 6);
+	params.switch_delay_us = 0;
+	params.switch_debounce_ms = 8;
+	assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 8, 7);
+	params.switch_delay_us = 386;
+	assert_refused(LW_REASON_DEBOUNCE_TOO_LONG, LW_ADDRESS_SWITCH_DEBOUNCE_MS, 8, 7);
 }
 
 static void test_trim_is_checked_by_the_same_rules(void)
@@ -486,6 +586,12 @@ static void check_proof_applies(const struct lw_law_window *window)
 	TEST_ASSERT_TRUE(window->sweep_end - window->sweep_begin >= LW_USTEP);
 	TEST_ASSERT_TRUE(2 * (int64_t)window->sweep_end + run <= 2 * 32699LL * LW_USTEP);
 	TEST_ASSERT_TRUE(2 * (int64_t)window->sweep_begin - run >= -2 * 32699LL * LW_USTEP);
+	TEST_ASSERT_TRUE(window->dwell_plus_edges <= LW_LAW_DWELL_EDGES_MAX);
+	TEST_ASSERT_TRUE(window->dwell_minus_edges <= LW_LAW_DWELL_EDGES_MAX);
+	TEST_ASSERT_TRUE(window->breaker_edges <= LW_LAW_BREAKER_EDGES_MAX);
+	TEST_ASSERT_TRUE(window->breaker_cycles <= LW_LAW_BREAKER_CYCLES_MAX);
+	TEST_ASSERT_NOT_EQUAL(1, window->breaker_cycles);
+	TEST_ASSERT_TRUE((window->breaker_edges > 0) == (window->breaker_cycles > 0));
 }
 
 /** A trim that is accepted leads to such a window, too. */
@@ -527,7 +633,7 @@ static void check_accepted(uint64_t *seed)
 	}
 
 	/* P8: the sanitizers watch both reversals. */
-	for (int side = -1; side <= 1; side += 2) {
+	FOR_BOTH_WAYS(side) {
 		law = lw_law_at(&window, side > 0 ? window.sweep_end - 1 : window.sweep_begin,
 				side * derived.ks);
 		for (int i = 0; i < 50; i++) {
@@ -652,11 +758,52 @@ static void test_wholly_random_sets_do_not_overflow(void)
 	}
 }
 
+static void test_raw_slopes_up_to_the_last_below_one_step(void)
+{
+	params.expert_mode = 1;
+	params.raw_ka = 2;
+	params.raw_nr = 32768;
+	assert_refused(LW_REASON_SLOPE_ABOVE_ONE_STEP, LW_ADDRESS_RAW_NR, 32768, 32767);
+	params.raw_ka = 5;
+	params.raw_nr = 13108;
+	assert_refused(LW_REASON_SLOPE_ABOVE_ONE_STEP, LW_ADDRESS_RAW_NR, 13108, 13107);
+}
+
+static void test_a_gear_of_two_to_two_is_none(void)
+{
+	struct lw_derived ungeared;
+
+	assert_accepted();
+	ungeared = derived;
+	params.encoder_ratio_numerator *= 2;
+	params.encoder_ratio_denominator *= 2;
+	assert_accepted();
+	TEST_ASSERT_EQUAL_MEMORY(&ungeared, &derived, sizeof(derived));
+}
+
+static void test_the_smallest_pitch_is_told_exactly(void)
+{
+	for (int32_t gear = 1; gear <= 2; gear++) {
+		setUp();
+		params.pitch_um = 10;
+		params.encoder_pulses_per_rev = 8192;
+		params.encoder_edges_per_pulse = 4;
+		params.encoder_ratio_numerator = 100 * gear;
+		params.encoder_ratio_denominator = gear;
+		params.screw_lead_um = 100000;
+		params.microsteps_per_rev = 200;
+		/* 100000 * 3276800 / (2 * 65536 * 200) */
+		assert_refused(LW_REASON_SLOPE_TOO_SMALL, LW_ADDRESS_PITCH_UM, 10, 12500);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_defaults_give_the_example_set);
 	RUN_TEST(test_dwell_is_in_drum_revolutions);
+	RUN_TEST(test_the_breaker_is_in_drum_revolutions_and_off_without_either_number);
+	RUN_TEST(test_the_drum_is_as_wide_as_from_far_point_to_far_point);
 	RUN_TEST(test_conversions_round_to_nearest);
 	RUN_TEST(test_expert_mode_takes_the_raw_values);
 	RUN_TEST(test_reason_slope_above_one_step);
@@ -674,13 +821,21 @@ int main(void)
 	RUN_TEST(test_reason_travel_too_short);
 	RUN_TEST(test_reason_overspeed_limits_crossed);
 	RUN_TEST(test_reason_tolerance_beyond_flange);
+	RUN_TEST(test_reason_breaker_one_cycle);
+	RUN_TEST(test_reason_packing_too_small);
+	RUN_TEST(test_reason_core_thinner_than_rope);
+	RUN_TEST(test_reason_drum_narrower_than_rope);
 	RUN_TEST(test_reason_too_few_edges);
 	RUN_TEST(test_reason_debounce_too_long);
+	RUN_TEST(test_reason_switch_delay_too_long);
 	RUN_TEST(test_trim_is_checked_by_the_same_rules);
 	RUN_TEST(test_configurations_of_the_layers_below);
 	RUN_TEST(test_need_index_by_the_flag_of_each_register);
 	RUN_TEST(test_random_sets_within_the_limits_of_their_registers);
 	RUN_TEST(test_the_proof_applies_to_the_outermost_sets);
 	RUN_TEST(test_wholly_random_sets_do_not_overflow);
+	RUN_TEST(test_raw_slopes_up_to_the_last_below_one_step);
+	RUN_TEST(test_a_gear_of_two_to_two_is_none);
+	RUN_TEST(test_the_smallest_pitch_is_told_exactly);
 	return UNITY_END();
 }

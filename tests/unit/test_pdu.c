@@ -1,7 +1,10 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Modbus requests: every function code for bits and registers in its normal form, at each limit and
  * one beyond, and refused; and what holds for all functions.
  */
+#include <stdio.h>
+
 #include "pdu_rig.h"
 
 /* A request of function, address, count, byte count and so many zero bytes. */
@@ -79,6 +82,7 @@ static void test_fc05_write_single_coil(void)
 	TEST_ASSERT_EQUAL_HEX32(8, small.coils[0]);
 	assert_answer(BYTES(5, 0, 3, 0, 0), BYTES(5, 0, 3, 0, 0));
 	TEST_ASSERT_EQUAL_HEX32(0, small.coils[0]);
+	assert_answer(BYTES(5, 0x07, 0xDF, 0xFF, 0), BYTES(5, 0x07, 0xDF, 0xFF, 0)); /* the last */
 	assert_refused(BYTES(5, 0, 3, 0xFF, 1), 3, LW_REASON_BAD_COIL_VALUE);
 	assert_error_details(3, 0xFF01, 0xFF00);
 	assert_refused(BYTES(5, 0, 3, 0, 1), 3, LW_REASON_BAD_COIL_VALUE);
@@ -181,6 +185,8 @@ static void test_fc22_mask_write_register(void)
 	assert_answer(BYTES(22, 0, 104, 0xFF, 0xFF, 0xFF, 0xFF),
 		      BYTES(22, 0, 104, 0xFF, 0xFF, 0xFF, 0xFF));
 	TEST_ASSERT_EQUAL_HEX32(0xFF00, small.values.array[4]);
+	assert_answer(BYTES(22, 0x01, 0x2C, 0, 0, 0, 5),
+		      BYTES(22, 0x01, 0x2C, 0, 0, 0, 5)); /* none follows it */
 	assert_refused(BYTES(22, 0, 8, 0, 0, 0, 3), 3, LW_REASON_OUT_OF_RANGE);
 	assert_refused(BYTES(22, 0, 2, 0, 0, 0, 3), 2, LW_REASON_HALF_OF_PAIR);
 	assert_refused(BYTES(22, 0, 11, 0, 0, 0, 3), 2, LW_REASON_UNKNOWN_ADDRESS);
@@ -315,6 +321,62 @@ static void test_random_requests(void)
 	TEST_ASSERT_GREATER_THAN(1000, stored);
 }
 
+/* What only an answer can look like, and a request of the same function that must not pass for it.
+ */
+static void test_answers_are_told_from_requests(void)
+{
+	static const struct {
+		uint8_t pdu[16];
+		size_t length;
+		bool is_response;
+	} cases[] = {
+		{{0x84, 2}, 2, true},
+		{{1, 1, 5}, 3, true},
+		{{1, 0}, 2, false},
+		{{1, 0, 0, 0, 8}, 5, false},
+		{{1, 3, 0, 0, 8}, 5, false},
+		{{3, 2, 0, 5}, 4, true},
+		{{3, 3, 0, 0, 1}, 5, false},
+		{{3, 3, 0, 5, 1}, 5, false},
+		{{3, 5, 0, 5, 0, 5, 1}, 7, false},
+		{{4, 4, 0, 0, 0, 1}, 6, true},
+		{{3}, 1, false},
+		{{17}, 1, false},
+		{{17, 3, 1, 0xFF, 7}, 5, true},
+		{{16, 0, 1, 0, 2}, 5, true},
+		{{16, 0, 1, 0, 1, 2, 0, 7}, 8, false},
+		{{15, 0, 1, 0, 2}, 5, true},
+		{{23, 2, 0, 5}, 4, true},
+		{{23, 0, 1, 0, 1, 0, 1, 0, 1, 2, 0, 7}, 12, false},
+		{{23, 10, 0, 0, 1, 0, 1, 0, 1, 2, 0, 7}, 12, false}, /* reads from 0x0A00 */
+		{{23, 10, 0, 0, 1, 0, 1, 0, 1, 4, 0, 7}, 12, true},
+		{{20, 4, 3, 6, 0, 9}, 6, true},
+		{{20, 3, 3, 6, 0}, 5, true},
+		{{20, 6, 5, 6, 0, 9, 0, 9}, 8, true},
+		{{20, 8, 3, 6, 0, 9, 3, 6, 0, 9}, 10, true},
+		{{20, 9, 3, 6, 0, 9}, 6, false},
+		{{20, 7, 6, 0, 1, 0, 0, 0, 1}, 9, false},
+		{{20, 2, 3, 6}, 4, false},
+		{{20, 4, 3, 5, 0, 9}, 6, false},
+		{{43, 14, 1, 0x81, 0, 0, 1, 0, 0}, 9, true},
+		{{43, 14, 1, 0x81, 0, 0, 0}, 7, true},
+		{{43, 14, 1, 0x81, 0, 0}, 6, false},
+		{{43, 14, 1, 0}, 4, false},
+		{{43, 14, 1, 1, 0, 0, 1}, 7, false},
+		{{43, 13, 1, 0x81, 0, 0, 1}, 7, false},
+		{{6, 0, 1, 0, 2}, 5, false},
+		{{99, 1, 2}, 3, false},
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		char which[16];
+
+		(void)snprintf(which, sizeof(which), "case %u", (unsigned int)i);
+		TEST_ASSERT_EQUAL_MESSAGE(cases[i].is_response,
+					  lw_pdu_is_response(cases[i].pdu, cases[i].length), which);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -333,5 +395,6 @@ int main(void)
 	RUN_TEST(test_success_does_not_clear_the_last_error);
 	RUN_TEST(test_only_pure_writes_may_be_broadcast);
 	RUN_TEST(test_random_requests);
+	RUN_TEST(test_answers_are_told_from_requests);
 	return UNITY_END();
 }

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Modbus functions beside the registers: diagnostics, identification, file records. In their normal
  * form, at each limit and one beyond, and refused.
@@ -38,12 +39,15 @@ static void test_fc08_reads_each_counter(void)
 	assert_refused(BYTES(8, 0, 11, 0, 1), 3, LW_REASON_OUT_OF_RANGE);
 	assert_error_details(LW_NO_ADDRESS, 1, 0);
 	assert_refused(BYTES(8, 0, 11, 0, 0, 0, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(8, 0, 3, 0), 3, LW_REASON_BAD_LENGTH);
 }
 
 static void test_fc08_diagnostic_register_and_clear(void)
 {
 	pdu.counters[LW_BUS_CRC_ERRORS] = 3;
 	assert_answer(BYTES(8, 0, 2, 0, 0), BYTES(8, 0, 2, 0, 0x0A)); /* and server messages */
+	pdu.counters[LW_BUS_MESSAGES] = 1;
+	assert_answer(BYTES(8, 0, 2, 0, 0), BYTES(8, 0, 2, 0, 0x0B));
 	assert_answer(BYTES(8, 0, 10, 0, 0), BYTES(8, 0, 10, 0, 0));
 	for (unsigned int i = 0; i < LW_BUS_COUNTER_COUNT; i++) {
 		TEST_ASSERT_EQUAL_UINT32(0, pdu.counters[i]);
@@ -84,6 +88,9 @@ static void test_fc08_listen_only_until_restart(void)
 	TEST_ASSERT_EQUAL_UINT(0, small.store_count);
 	TEST_ASSERT_EQUAL_UINT32(2, pdu.counters[LW_BUS_NO_RESPONSES]);
 	ask(BYTES(8, 0, 1, 0, 1)); /* no restart */
+	ask(BYTES(8, 0, 1, 0, 0, 0));
+	ask(BYTES(8, 0, 10, 0, 0));
+	ask(BYTES(6, 0, 1, 0, 0));
 	TEST_ASSERT_TRUE(pdu.listen_only);
 
 	ask(BYTES(8, 0, 1, 0, 0));
@@ -147,9 +154,26 @@ static void test_fc43_more_follows(void)
 	assert_answer(BYTES(43, 14, 1, 2), BYTES(43, 14, 1, 0x82, 0, 0, 1, 2, 1, 'c'));
 }
 
+/* 241 characters behind an object of one fill the PDU; 242 do not fit beside it. */
+static void test_fc43_an_object_fits_to_the_last_byte(void)
+{
+	struct lw_pdu_config long_config = config;
+
+	long_config.device_id[LW_DEVICE_ID_VENDOR_NAME] = "a";
+	long_config.device_id[LW_DEVICE_ID_PRODUCT_CODE] = &LONG_TEXT[250 - 241];
+	pdu.config = &long_config;
+	ask(BYTES(43, 14, 1, 0));
+	TEST_ASSERT_EQUAL_UINT(LW_PDU_MAX, response_length);
+	TEST_ASSERT_EQUAL_HEX8(2, response[6]);
+	long_config.device_id[LW_DEVICE_ID_PRODUCT_CODE] = &LONG_TEXT[250 - 242];
+	assert_answer(BYTES(43, 14, 1, 0), BYTES(43, 14, 1, 0x82, 0xFF, 1, 1, 0, 1, 'a'));
+}
+
 static void test_fc43_refusals(void)
 {
 	assert_refused(BYTES(43, 13, 1, 0), 1, LW_REASON_UNDEFINED_SUB_FUNCTION);
+	assert_error_details(LW_NO_ADDRESS, 13, 14);
+	assert_refused(BYTES(43, 13), 1, LW_REASON_UNDEFINED_SUB_FUNCTION);
 	assert_refused(BYTES(43, 14, 0, 0), 3, LW_REASON_UNDEFINED_SUB_FUNCTION);
 	assert_refused(BYTES(43, 14, 5, 0), 3, LW_REASON_UNDEFINED_SUB_FUNCTION);
 	assert_refused(BYTES(43, 14, 1), 3, LW_REASON_BAD_LENGTH);
@@ -180,6 +204,19 @@ static void test_fc17_leaves_out_a_text_that_does_not_fit(void)
 	ask(BYTES(17));
 	TEST_ASSERT_EQUAL_UINT(2 + 2 + 5 + 4, response_length);
 	TEST_ASSERT_EQUAL_HEX8(2 + 5 + 4, response[1]);
+	TEST_ASSERT_EQUAL_MEMORY(" vend 1.2", &response[4], 9);
+}
+
+static void test_fc17_a_text_fits_to_the_last_byte(void)
+{
+	struct lw_pdu_config long_config = config;
+
+	long_config.device_id[LW_DEVICE_ID_PRODUCT_CODE] = &LONG_TEXT[250 - 243];
+	pdu.config = &long_config;
+	ask(BYTES(17));
+	TEST_ASSERT_EQUAL_UINT(LW_PDU_MAX, response_length); /* without the version */
+	long_config.device_id[LW_DEVICE_ID_PRODUCT_CODE] = &LONG_TEXT[250 - 244];
+	ask(BYTES(17));
 	TEST_ASSERT_EQUAL_MEMORY(" vend 1.2", &response[4], 9);
 }
 
@@ -231,6 +268,7 @@ static void test_fc20_refusals(void)
 	assert_error_details(LW_NO_ADDRESS, 0, 7);
 	assert_refused(BYTES(20, 6, 6, 0, 1, 0, 0, 0), 3, LW_REASON_BAD_COUNT);
 	assert_refused(BYTES(20, 8, 6, 0, 1, 0, 0, 0, 1, 6), 3, LW_REASON_BAD_LENGTH);
+	assert_error_details(LW_NO_ADDRESS, 8, 7);
 	assert_refused(BYTES(20, 7, 6, 0, 1, 0, 0, 0), 3, LW_REASON_BAD_LENGTH);
 	assert_refused(BYTES(20, 7, 6, 0, 1, 0, 0, 0, 1, 0), 3, LW_REASON_BAD_LENGTH);
 	assert_refused(BYTES(20, 7, 5, 0, 1, 0, 0, 0, 1), 2, LW_REASON_BAD_REFERENCE_TYPE);
@@ -239,6 +277,7 @@ static void test_fc20_refusals(void)
 	assert_refused(BYTES(20, 7, 6, 1, 1, 0, 0, 0, 1), 2, LW_REASON_UNKNOWN_FILE);
 	assert_error_details(LW_NO_ADDRESS, 0x101, 0);
 	assert_refused(BYTES(20, 7, 6, 0, 1, 0, 0, 0, 0), 3, LW_REASON_BAD_COUNT);
+	assert_error_details(LW_NO_ADDRESS, 0, 1);
 	assert_refused(BYTES(20, 7, 6, 0, 1, 1, 0x2B, 0, 2), 2, LW_REASON_UNKNOWN_RECORD);
 	assert_error_details(300, 300, 300);
 	assert_refused(BYTES(20, 7, 6, 0, 1, 0xFF, 0xFF, 0xFF, 0xFF), 2, LW_REASON_UNKNOWN_RECORD);
@@ -292,6 +331,9 @@ static void test_fc21_refusals_write_nothing(void)
 		       LW_REASON_OUT_OF_RANGE);
 	assert_error_details(9, 0xBAD0, 0);
 	assert_refused(BYTES(21, 11, 6, 0, 1, 0, 0, 0, 1, 0, 1, 6, 0), 3, LW_REASON_BAD_LENGTH);
+	assert_refused(BYTES(21, 16, 6, 0, 1, 0, 0, 0, 1, 0, 1, 6, 0, 1, 0, 0, 0, 1), 3,
+		       LW_REASON_BAD_LENGTH);
+	assert_error_details(LW_NO_ADDRESS, 7, 9); /* a head, and nothing to write */
 	file_is_busy = true;
 	assert_refused(BYTES(21, 9, 6, 0, 1, 0, 0, 0, 1, 0, 1), 6, LW_REASON_BUSY_TRACKING);
 	TEST_ASSERT_EQUAL_UINT(0, file_writes);
@@ -321,6 +363,8 @@ int main(void)
 	RUN_TEST(test_fc43_streams);
 	RUN_TEST(test_fc43_one_object);
 	RUN_TEST(test_fc43_more_follows);
+	RUN_TEST(test_fc43_an_object_fits_to_the_last_byte);
+	RUN_TEST(test_fc17_a_text_fits_to_the_last_byte);
 	RUN_TEST(test_fc43_refusals);
 	RUN_TEST(test_fc17_server_id);
 	RUN_TEST(test_fc17_leaves_out_a_text_that_does_not_fit);

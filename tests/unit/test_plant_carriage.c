@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief The plant's motor and carriage: following, pull-out, stall, slip, triggers, configuration.

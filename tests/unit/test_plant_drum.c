@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief The plant's drum and encoder: quadrature, profiles, encoder faults.
@@ -288,6 +289,97 @@ static void test_counts_out_of_range_are_refused(void)
 			      lw_plant_inject(&rig.plant, LW_PLANT_FAULT_ENCODER_DITHER, -1));
 }
 
+/** Execute the next event. @return whether an index pulse begins with it */
+static bool index_begins(struct lw_plant *plant)
+{
+	return (lw_plant_advance(plant) & LW_PLANT_ENCODER_INDEX) != 0 && plant->pins.encoder_index;
+}
+
+/** Execute all events up to a time, runs of transitions as runs. @return index pulses begun */
+static int run_in_runs(struct lw_plant *plant, uint64_t until_ns, uint32_t *transitions)
+{
+	int indices = 0;
+
+	while (lw_plant_next_event_ns(plant) <= until_ns) {
+		if (!lw_plant_next_is_run(plant, until_ns)) {
+			indices += index_begins(plant);
+			continue;
+		}
+
+		struct lw_plant_run run = lw_plant_run_begin(plant, until_ns);
+
+		do {
+			indices += lw_plant_run_next(&run);
+			++*transitions;
+			if (*transitions % 3 == 0) {
+				lw_plant_run_end(plant, &run); /* and it goes on */
+			}
+		} while (lw_plant_run_goes_on(&run));
+		lw_plant_run_end(plant, &run);
+	}
+	return indices;
+}
+
+/* A run is what its events are, one by one: the same plant to the last bit, whatever happens. */
+static void test_a_run_is_its_transitions_one_by_one(void)
+{
+	static const struct {
+		int32_t drum_milli_rpm;
+		enum lw_plant_fault fault;
+		int32_t argument;
+	} parts[] = {
+		{2500000, LW_PLANT_FAULT_COUNT, 0},
+		{-1000000, LW_PLANT_FAULT_ENCODER_DITHER, 3},
+		{-1000000, LW_PLANT_FAULT_ENCODER_EXTRA_PULSES, 1},
+		{300000, LW_PLANT_FAULT_ENCODER_LOSE_PULSES, 5},
+		{300000, LW_PLANT_FAULT_ENCODER_A, LW_PLANT_CHANNEL_FLICKER},
+		{500000, LW_PLANT_FAULT_ENCODER_A, LW_PLANT_CHANNEL_OK},
+		{500000, LW_PLANT_FAULT_ENCODER_INDEX, 0},
+		{500000, LW_PLANT_FAULT_PLACE_CARRIAGE, 80000},
+		{900000, LW_PLANT_FAULT_PLACE_CARRIAGE, -80000},
+		{0, LW_PLANT_FAULT_ENCODER_INDEX, 1},
+	};
+	struct lw_plant_config config;
+	static struct lw_plant in_runs;
+
+	lw_plant_config_default(&config);
+	config.drum_acceleration_rpm_per_s = 50000;
+	for (uint32_t pulses = 1; pulses <= 360; pulses += 359) {
+		uint32_t transitions = 0;
+		uint64_t until_ns = 0;
+		int indices = 0;
+
+		config.encoder_pulses_per_rev = pulses;
+		config.encoder_revs_per_drum_rev_num = 1440 / pulses;
+		rig_init(&rig, &config);
+		in_runs = rig.plant;
+		for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++) {
+			struct lw_plant *const plants[] = {&rig.plant, &in_runs};
+
+			for (size_t j = 0; j < 2; j++) {
+				TEST_ASSERT_EQUAL_INT(
+					0,
+					lw_plant_drum_target(plants[j], parts[i].drum_milli_rpm));
+				TEST_ASSERT_EQUAL_INT(
+					parts[i].fault == LW_PLANT_FAULT_COUNT ? -EINVAL : 0,
+					lw_plant_inject(plants[j], parts[i].fault,
+							parts[i].argument));
+			}
+			/* Also in the midst of a substep. */
+			for (int j = 0; j < 9000; j++) {
+				until_ns += 33333;
+				while (lw_plant_next_event_ns(&rig.plant) <= until_ns) {
+					indices += index_begins(&rig.plant);
+				}
+				indices -= run_in_runs(&in_runs, until_ns, &transitions);
+				TEST_ASSERT_EQUAL_MEMORY(&rig.plant, &in_runs, sizeof(in_runs));
+			}
+		}
+		TEST_ASSERT_GREATER_THAN_UINT32(20000, transitions);
+		TEST_ASSERT_EQUAL_INT(0, indices);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -308,5 +400,6 @@ int main(void)
 	RUN_TEST(test_dither_of_a_turning_drum_stays_legal_and_nets_to_zero);
 	RUN_TEST(test_extra_pulses_are_legal_and_stay);
 	RUN_TEST(test_counts_out_of_range_are_refused);
+	RUN_TEST(test_a_run_is_its_transitions_one_by_one);
 	return UNITY_END();
 }

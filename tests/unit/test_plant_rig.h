@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief What the tests of the plant share: running it, decoding its encoder, moving its carriage.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief The plant's switches: trigger points, contacts and their bounce, switch faults,
@@ -179,6 +180,12 @@ static void test_fast_carriage_triggers_and_releases_later(void)
 		um = position_at_change(side, -200.0);
 		TEST_ASSERT_DOUBLE_WITHIN(10.0, LIMIT_UM - HYSTERESIS_UM - 100.0, um);
 		assert_shifted(LIMIT_UM - HYSTERESIS_UM, um);
+
+		/* Later by as much as it is told. */
+		start_at(0);
+		inject(LW_PLANT_FAULT_SWITCH_LATE, 2000);
+		rig_command(&rig, &motion, 200.0 * outward, GENTLY_MM_PER_S2, 200 * MS);
+		TEST_ASSERT_DOUBLE_WITHIN(5.0, LIMIT_UM + 400.0, position_at_change(side, 200.0));
 	}
 }
 
@@ -294,6 +301,9 @@ static void test_unknown_switch_faults_are_refused(void)
 	TEST_ASSERT_EQUAL_INT(-EINVAL, lw_plant_inject(&rig.plant, LW_PLANT_FAULT_LIMIT_MINUS, -1));
 	TEST_ASSERT_EQUAL_INT(-EINVAL, lw_plant_inject(&rig.plant, LW_PLANT_FAULT_OVERTRAVEL_PLUS,
 						       LW_PLANT_SWITCH_NO_BROKEN));
+	TEST_ASSERT_EQUAL_INT(-ERANGE, lw_plant_inject(&rig.plant, LW_PLANT_FAULT_SWITCH_LATE, -1));
+	TEST_ASSERT_EQUAL_INT(-ERANGE,
+			      lw_plant_inject(&rig.plant, LW_PLANT_FAULT_SWITCH_LATE, 1000001));
 }
 
 static void test_an_injection_changes_pins_in_an_event_only(void)

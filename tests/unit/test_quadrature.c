@@ -1,7 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Decoding of the drum encoder. */
 #include <unity.h>
 
-#include "lw/quadrature.h"
+#include "lw/motion/quadrature.h"
 
 /** The levels of A (bit 1) and B (bit 0) in the order of forward motion. */
 static const uint8_t forward[4] = {0, 2, 3, 1};
@@ -140,6 +141,35 @@ static void test_init_forgets_illegal_transitions(void)
 	TEST_ASSERT_EQUAL_INT(0, update(3));
 }
 
+static void test_what_is_no_edge_onward_is_counted_as_what_it_is(void)
+{
+	config.edges_per_pulse = 1; /* from 00 forward: A is an edge, B, A and B are none */
+	start(0);
+	for (int i = 1; i <= 4; i++) {
+		(void)update(forward[i & 3]);
+	}
+	TEST_ASSERT_EQUAL_UINT32(1, quadrature.odd_changes[LW_QUADRATURE_A]);
+	TEST_ASSERT_EQUAL_UINT32(2, quadrature.odd_changes[LW_QUADRATURE_B]);
+	(void)update(3);
+	TEST_ASSERT_EQUAL_UINT32(1, quadrature.illegal_transitions);
+	(void)update(3);
+	TEST_ASSERT_EQUAL_UINT32(1, quadrature.late_interrupts);
+	TEST_ASSERT_EQUAL_UINT32(1, quadrature.odd_changes[LW_QUADRATURE_A]);
+	TEST_ASSERT_EQUAL_UINT32(2, quadrature.odd_changes[LW_QUADRATURE_B]);
+	TEST_ASSERT_EQUAL_UINT32(0, quadrature.turns);
+}
+
+static void test_an_edge_that_turns_back_is_a_turn(void)
+{
+	start(0);
+	(void)count(3, 1);
+	TEST_ASSERT_EQUAL_UINT32(0, quadrature.turns);
+	(void)count(3, -1);
+	TEST_ASSERT_EQUAL_UINT32(1, quadrature.turns);
+	(void)count(3, 1);
+	TEST_ASSERT_EQUAL_UINT32(2, quadrature.turns);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -149,5 +179,7 @@ int main(void)
 	RUN_TEST(test_inversions);
 	RUN_TEST(test_one_edge_per_pulse_counts_while_the_inverted_b_is_low);
 	RUN_TEST(test_init_forgets_illegal_transitions);
+	RUN_TEST(test_what_is_no_edge_onward_is_counted_as_what_it_is);
+	RUN_TEST(test_an_edge_that_turns_back_is_a_turn);
 	return UNITY_END();
 }

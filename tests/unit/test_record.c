@@ -1,10 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The frame of everything that is stored. */
 #include <errno.h>
 #include <string.h>
 
 #include <unity.h>
 
-#include "lw/record.h"
+#include "lw/bytes/crc32.h"
+#include "lw/storage/record.h"
 
 static const uint8_t golden[] = {'T',  'E', 'S', 'T', 0x12, 0x34, 0,    5,    0x01, 0x02, 0x03,
 				 0x04, 'h', 'e', 'l', 'l',  'o',  0x2F, 0xDC, 0x04, 0x5A};

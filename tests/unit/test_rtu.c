@@ -1,11 +1,12 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Modbus RTU framing: CRC, silence, gaps, lengths. */
 #include <errno.h>
 #include <string.h>
 
 #include <unity.h>
 
-#include "lw/crc16.h"
-#include "lw/rtu.h"
+#include "lw/modbus/crc16.h"
+#include "lw/modbus/rtu.h"
 
 #define SILENCE_US 1750u
 #define GAP_US     750u

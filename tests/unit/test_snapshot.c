@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Reads while edges come. A signal is the encoder interrupt: it comes between any two instructions
  * of a request, as it does on the hardware. The law is reversible bit for bit, so that position and
@@ -16,10 +17,11 @@
  *  word of a 64-bit count changes, and on the minus side through a reversal. */
 #define REACH_EDGES 12000
 
-/** Reads that an edge must have interrupted. */
-#define INTERRUPTED_READS 10000
+/** Reads that an edge must have interrupted: there and back once, and more. */
+#define INTERRUPTED_READS 60000
 
-#define INTERRUPT_NS 15000
+/** Reads of which the mean tells how long one takes. */
+#define TIMED_READS 1000
 
 /** First and number of registers of a read: state to span_error_um. */
 #define FIRST LW_ADDRESS_STATE
@@ -142,14 +144,31 @@ static void check(const uint8_t *registers)
 				get(registers, LW_ADDRESS_NET_EDGES, 4));
 }
 
+/* How long a read takes here and now, in ns of this program's own time. */
+static long read_takes_ns(void)
+{
+	struct timespec begin;
+	struct timespec end;
+	uint8_t registers[2 * COUNT];
+
+	(void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &begin);
+	for (int i = 0; i < TIMED_READS; i++) {
+		read_registers(registers);
+	}
+	(void)clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &end);
+	return ((end.tv_sec - begin.tv_sec) * 1000000000L + end.tv_nsec - begin.tv_nsec) /
+	       TIMED_READS;
+}
+
 static void test_every_read_is_of_one_moment(void)
 {
 	const struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESTART};
-	const struct itimerspec period = {.it_value.tv_nsec = INTERRUPT_NS,
-					  .it_interval.tv_nsec = INTERRUPT_NS};
+	struct itimerspec once = {0};
 	struct sigevent event = {.sigev_notify = SIGEV_SIGNAL, .sigev_signo = SIGUSR1};
 	uint8_t registers[2 * COUNT];
 	unsigned int interrupted = 0;
+	unsigned long reads = 0;
+	unsigned long longest_ns;
 	timer_t timer;
 
 	rig_prepare(0);
@@ -166,10 +185,14 @@ static void test_every_read_is_of_one_moment(void)
 
 	TEST_ASSERT_EQUAL_INT(0, sigaction(SIGUSR1, &action, NULL));
 	TEST_ASSERT_EQUAL_INT(0, timer_create(CLOCK_MONOTONIC, &event, &timer));
-	TEST_ASSERT_EQUAL_INT(0, timer_settime(timer, 0, &period, NULL));
+	longest_ns = 2 * (unsigned long)read_takes_ns();
 	while (interrupted < INTERRUPTED_READS) {
 		const sig_atomic_t before = interrupts;
 
+		/* One edge for a read, each time at another place in it: edges in a steady period
+		 * would leave a busy machine no time for the reads. */
+		once.it_value.tv_nsec = 1 + (long)(reads++ * 7919 % longest_ns);
+		TEST_ASSERT_EQUAL_INT(0, timer_settime(timer, 0, &once, NULL));
 		read_registers(registers);
 		interrupted += interrupts != before;
 		check(registers);

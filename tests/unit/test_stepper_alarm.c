@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The stepper driver's alarm: a fault, no launch, and no way on while it stands. */
 #include <errno.h>
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Two slots for each kind of record: whatever happens to a write or to the memory, power-up finds
  * the old set, the new set, or factory values and says so.
@@ -7,7 +8,7 @@
 
 #include <unity.h>
 
-#include "lw/store.h"
+#include "lw/storage/store.h"
 #include "record_schema_1.h"
 
 /** A memory of slots that a write may be cut in. */
@@ -228,6 +229,90 @@ static void test_a_journal_cut_at_any_byte_leaves_the_old_or_the_new_one(void)
 			}
 		}
 	}
+}
+
+static struct lw_look look_with(uint32_t causes)
+{
+	struct lw_look look = {.causes = causes, .standing_millirev = 1003 * causes};
+
+	look.marks[LW_LOOK_ROPE_STANDING] = (struct lw_look_mark){-(int32_t)causes, causes};
+	return look;
+}
+
+static void test_a_look_cut_at_any_byte_leaves_the_old_or_the_new_one(void)
+{
+	const struct lw_look looks[] = {look_with(0), look_with(9), look_with(17), look_with(0)};
+
+	for (size_t i = 1; i < sizeof(looks) / sizeof(looks[0]); i++) {
+		const struct memory start = memory;
+
+		for (int rest = 0; rest < REST_COUNT; rest++) {
+			bool cut = true;
+
+			for (size_t after = 0; cut; after++) {
+				memory = start;
+				power_up();
+				TEST_ASSERT_EQUAL_MEMORY(&looks[i - 1], &store.look,
+							 sizeof(store.look));
+				lw_store_save_look(&store, &looks[i]);
+				cut = write_cut(after, (enum rest)rest);
+				power_up();
+				TEST_ASSERT_EQUAL_MEMORY(&looks[cut ? i - 1 : i], &store.look,
+							 sizeof(store.look));
+			}
+		}
+		memory = start;
+		power_up();
+		lw_store_save_look(&store, &looks[i]);
+		write_whole();
+		TEST_ASSERT_EQUAL_MEMORY(&looks[i], &store.look, sizeof(store.look));
+	}
+}
+
+static void test_a_look_of_another_firmware(void)
+{
+	const struct lw_look look = look_with(17);
+	uint8_t *at = memory.slots[LW_STORE_LOOK];
+
+	/* A cause more than this one knows: what it knows is there. */
+	(void)lw_look_record_encode(&look, 1, at);
+	at[LW_RECORD_HEAD_SIZE] |= 0x80;
+	memset(at + LW_LOOK_RECORD_SIZE - 4, 7, 8);
+	(void)lw_record_seal(at, "LWRL", LW_LOOK_RECORD_SCHEMA, 1,
+			     LW_LOOK_RECORD_SIZE - LW_RECORD_OVERHEAD + 8);
+	power_up();
+	TEST_ASSERT_EQUAL_MEMORY(&look, &store.look, sizeof(look));
+
+	/* Fewer; then another schema, and other shapes. */
+	(void)lw_record_seal(at, "LWRL", LW_LOOK_RECORD_SCHEMA, 1, 12 + 8);
+	at[LW_RECORD_HEAD_SIZE] = 0;
+	(void)lw_record_seal(at, "LWRL", LW_LOOK_RECORD_SCHEMA, 1, 12 + 8);
+	power_up();
+	TEST_ASSERT_EQUAL_UINT32(17, store.look.causes);
+	TEST_ASSERT_EQUAL_INT32(0, store.look.marks[LW_LOOK_ROPE_STANDING].position_um);
+	(void)lw_record_seal(at, "LWRL", LW_LOOK_RECORD_SCHEMA + 1, 1, 12 + 8);
+	power_up();
+	TEST_ASSERT_EQUAL_UINT32(0, store.look.causes);
+	TEST_ASSERT_EQUAL_INT(LW_SLOT_STATE_NEWER, state(LW_STORE_LOOK));
+	for (size_t length = 0; length < 20; length++) {
+		(void)lw_record_seal(at, "LWRL", LW_LOOK_RECORD_SCHEMA, 1, length);
+		power_up();
+		TEST_ASSERT_EQUAL_INT(length == 12 ? LW_SLOT_STATE_GOOD : LW_SLOT_STATE_REFUSED,
+				      state(LW_STORE_LOOK));
+	}
+}
+
+static void test_what_needs_a_look_goes_before_all_else(void)
+{
+	const struct lw_look look = look_with(1);
+
+	add_event(1);
+	store.journal_wanted = true;
+	lw_store_save(&store, &set[0]);
+	lw_store_save_look(&store, &look);
+	write_whole();
+	TEST_ASSERT_EQUAL_INT(LW_SLOT_STATE_GOOD, state(LW_STORE_LOOK));
+	TEST_ASSERT_EQUAL_INT(LW_SLOT_STATE_EMPTY, state(LW_STORE_PARAMS));
 }
 
 static void test_every_single_bit_flip_of_a_pair_leaves_one_of_the_two_sets(void)
@@ -479,6 +564,9 @@ int main(void)
 	RUN_TEST(test_the_sequence_number_may_wrap);
 	RUN_TEST(test_a_save_cut_at_any_byte_leaves_the_old_or_the_new_set);
 	RUN_TEST(test_a_journal_cut_at_any_byte_leaves_the_old_or_the_new_one);
+	RUN_TEST(test_a_look_cut_at_any_byte_leaves_the_old_or_the_new_one);
+	RUN_TEST(test_a_look_of_another_firmware);
+	RUN_TEST(test_what_needs_a_look_goes_before_all_else);
 	RUN_TEST(test_every_single_bit_flip_of_a_pair_leaves_one_of_the_two_sets);
 	RUN_TEST(test_a_flip_in_both_slots_is_noticed);
 	RUN_TEST(test_every_single_bit_flip_of_the_journal_leaves_the_other_one);

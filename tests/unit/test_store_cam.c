@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Two slots for cam tables: whatever happens to a write or to the memory, power-up finds the old
  * table, the new one, or none and says so.
@@ -7,7 +8,7 @@
 
 #include <unity.h>
 
-#include "lw/store.h"
+#include "lw/storage/store.h"
 
 #define ROWS 3
 

@@ -1,6 +1,8 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Following the drum: loss of synchronization, re-indexing, trim. */
 #include <unity.h>
 
+#include "cases.h"
 #include "law_check.h"
 #include "rig.h"
 
@@ -14,25 +16,26 @@ void setUp(void)
 
 void tearDown(void)
 {
+	cases_end();
 }
 
 static bool los1(int side)
 {
-	return rig.controller->los1[side].set;
+	return rig.controller->los.los1[side].set;
 }
 
 static bool los2(int side)
 {
-	return rig.controller->los2[side].set;
+	return rig.controller->los.los2[side].set;
 }
 
 static void assert_no_los(void)
 {
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		TEST_ASSERT_FALSE(los1(side));
 		TEST_ASSERT_FALSE(los2(side));
 	}
-	TEST_ASSERT_EQUAL_UINT16(0, rig.controller->los_recoveries);
+	TEST_ASSERT_EQUAL_UINT16(0, rig.controller->los.recoveries);
 }
 
 /** Bring the carriage to the middle, moving toward a side, the drum turning in a direction. */
@@ -87,7 +90,7 @@ static void test_no_los_when_rocking_anywhere(void)
 
 static void test_los1_when_the_switch_does_not_trigger(void)
 {
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		for (int drum = -1; drum <= 1; drum += 2) {
 			go_to_the_middle(side, drum);
 			rig_set_switch(side, RIG_SWITCH_NEVER);
@@ -101,20 +104,23 @@ static void test_los1_when_the_switch_does_not_trigger(void)
 			TEST_ASSERT_TRUE(los1(side));
 			TEST_ASSERT_FALSE(los1(!side));
 			TEST_ASSERT_FALSE(los2(side));
-			TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los1[side].count);
+			TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los.los1[side].count);
 			TEST_ASSERT_INT32_WITHIN(10, lw_side_direction(side) * 8000,
-						 rig.controller->los1[side].position_q16 /
+						 rig.controller->los.los1[side].position_q16 /
 							 LW_USTEP);
-			TEST_ASSERT_TRUE(rig.controller->los1[side].time_ms >= before_us / 1000);
-			TEST_ASSERT_TRUE(rig.controller->los1[side].time_ms <= rig.now_us / 1000);
+			TEST_ASSERT_TRUE(rig.controller->los.los1[side].time_ms >=
+					 before_us / 1000);
+			TEST_ASSERT_TRUE(rig.controller->los.los1[side].time_ms <=
+					 rig.now_us / 1000);
 			/* A launch may be in progress: tracking goes on, the next is inhibited. */
 			TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
-			TEST_ASSERT_EQUAL_UINT16(1 << LW_LAUNCH_INHIBIT_LOS,
+			TEST_ASSERT_EQUAL_UINT16(1 << LW_LAUNCH_INHIBIT_LOS |
+							 1 << LW_LAUNCH_INHIBIT_SWITCH_IMPLAUSIBLE,
 						 lw_controller_launch_inhibit(rig.controller));
 			/* Once for each visit; a working switch does not clear it. */
 			rig_set_switch(side, RIG_SWITCH_WORKS);
 			rig_ticks(20000);
-			TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los1[side].count);
+			TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los.los1[side].count);
 			TEST_ASSERT_TRUE(los1(side));
 		}
 	}
@@ -125,17 +131,17 @@ static void test_los1_counts_each_visit_and_keeps_the_first(void)
 	go_to_the_middle(LW_PLUS, 1);
 	rig_set_switch(LW_PLUS, RIG_SWITCH_NEVER);
 	rig.drum_edges_per_s = 40000;
-	while (rig.controller->los1[LW_PLUS].count < 1) {
+	while (rig.controller->los.los1[LW_PLUS].count < 1) {
 		rig_tick();
 	}
 
-	const struct lw_los_record first = rig.controller->los1[LW_PLUS];
+	const struct lw_los_record first = rig.controller->los.los1[LW_PLUS];
 
-	while (rig.controller->los1[LW_PLUS].count < 2) {
+	while (rig.controller->los.los1[LW_PLUS].count < 2) {
 		rig_tick();
 	}
-	TEST_ASSERT_EQUAL_UINT32(first.time_ms, rig.controller->los1[LW_PLUS].time_ms);
-	TEST_ASSERT_EQUAL_INT32(first.position_q16, rig.controller->los1[LW_PLUS].position_q16);
+	TEST_ASSERT_EQUAL_UINT32(first.time_ms, rig.controller->los.los1[LW_PLUS].time_ms);
+	TEST_ASSERT_EQUAL_INT32(first.position_q16, rig.controller->los.los1[LW_PLUS].position_q16);
 }
 
 /** The carriage slips, and the switch of the side ahead triggers at a wrong position. */
@@ -157,9 +163,9 @@ static void check_los2(int side, int drum, int32_t slip_usteps)
 	TEST_ASSERT_TRUE(los2(side));
 	TEST_ASSERT_FALSE(los2(!side));
 	TEST_ASSERT_FALSE(los1(side)); /* it did trigger */
-	TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los_recoveries);
+	TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los.recoveries);
 	TEST_ASSERT_INT32_WITHIN(2, toward * 7840 - slip_usteps,
-				 rig.controller->los2[side].position_q16 / LW_USTEP);
+				 rig.controller->los.los2[side].position_q16 / LW_USTEP);
 	TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
 	TEST_ASSERT_TRUE(law_on_orbit(&rig.controller->motion.law, rig.controller->motion.window));
 	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
@@ -167,7 +173,7 @@ static void check_los2(int side, int drum, int32_t slip_usteps)
 
 static void test_los2_re_indexes_on_either_side_with_either_drum_direction(void)
 {
-	for (int side = 0; side < 2; side++) {
+	FOR_EACH_SIDE(side) {
 		for (int drum = -1; drum <= 1; drum += 2) {
 			/* Further out than the law knew: before the switch was expected. */
 			check_los2(side, drum, lw_side_direction(side) * 500);
@@ -201,7 +207,7 @@ static void test_a_second_trigger_before_the_correction_is_corrected_once(void)
 		slip(-250);
 		rig_follow_to(7840, 1, SPEED);
 		rig_ticks(2);
-		TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los_recoveries);
+		TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los.recoveries);
 		/* The drum turns back until the switch releases, and on until it triggers again. */
 		rig_follow_to(7780, -1, -SPEED);
 		TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_CORRECTION,
@@ -218,7 +224,7 @@ static void test_a_second_trigger_before_the_correction_is_corrected_once(void)
 		rig_follow_to(5000, -1, -SPEED);
 		TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
 		TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
-		TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los_recoveries);
+		TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los.recoveries);
 	}
 }
 
@@ -230,6 +236,52 @@ static void test_within_the_tolerance_nothing_happens(void)
 		rig_follow_to(7000, -1, SPEED);
 		assert_no_los();
 		TEST_ASSERT_EQUAL_INT32(sign * 97, rig_error_usteps());
+	}
+}
+
+/** Go to the middle with a switch that tells late, the drum at 40,000 edges/s. */
+static void go_late(int side, int drum, int32_t delay_us, int32_t late_usteps)
+{
+	go_to_the_middle(side, drum);
+	rig.params.switch_delay_us = delay_us;
+	rig.switch_at_usteps[side] += lw_side_direction(side) * late_usteps;
+}
+
+static void test_a_late_switch_is_judged_and_re_indexed_where_it_was_reached(void)
+{
+	FOR_EACH_SIDE(side) {
+		const int toward = lw_side_direction(side);
+
+		for (int drum = -1; drum <= 1; drum += 2) {
+			/* 3 ms at 40,000 edges/s are 50 microsteps: too far out without them. */
+			go_late(side, drum, 3000, 50);
+			slip(toward * -90);
+			rig_follow_to(toward * 7000, -toward, drum * 40000);
+			assert_no_los();
+
+			/* Within the tolerance without them. */
+			go_late(side, drum, 3000, 50);
+			slip(toward * 110);
+			rig_follow_to(toward * 7000, -toward, drum * 40000);
+			TEST_ASSERT_TRUE(los2(side));
+			TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
+		}
+	}
+}
+
+static void test_a_late_switch_may_tell_in_the_reversal(void)
+{
+	/* 7 ms: 117 microsteps, past the tolerance when it tells. */
+	for (int drum = -1; drum <= 1; drum += 2) {
+		go_late(LW_PLUS, drum, 7000, 117);
+		slip(-70);
+		rig_follow_to(7000, -1, drum * 40000);
+		assert_no_los();
+
+		go_late(LW_PLUS, drum, 7000, 117);
+		rig_set_switch(LW_PLUS, RIG_SWITCH_NEVER);
+		rig_follow_to(7000, -1, drum * 40000);
+		TEST_ASSERT_TRUE(los1(LW_PLUS));
 	}
 }
 
@@ -255,11 +307,11 @@ static void test_only_an_index_clears_los(void)
 	lw_controller_set_mode(rig.controller, LW_MODE_TRACK);
 	rig_run_to(LW_STATE_TRACKING);
 	TEST_ASSERT_TRUE(los2(LW_PLUS));
-	TEST_ASSERT_EQUAL_UINT16(0, rig.controller->los_recoveries); /* a new launch */
+	TEST_ASSERT_EQUAL_UINT16(0, rig.controller->los.recoveries); /* a new launch */
 	rig_index();
 	rig_run_to(LW_STATE_TRACKING);
 	assert_no_los();
-	TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los2[LW_PLUS].count);
+	TEST_ASSERT_EQUAL_UINT16(1, rig.controller->los.los2[LW_PLUS].count);
 	TEST_ASSERT_EQUAL_UINT16(0, lw_controller_launch_inhibit(rig.controller));
 }
 
@@ -300,15 +352,15 @@ static void test_counters_do_not_wrap(void)
 {
 	rig_track();
 	rig.params.los_recoveries_max = 0;
-	rig.controller->los2[LW_PLUS].count = UINT16_MAX;
-	rig.controller->los_recoveries = UINT16_MAX;
+	rig.controller->los.los2[LW_PLUS].count = UINT16_MAX;
+	rig.controller->los.recoveries = UINT16_MAX;
 	rig_follow_to(5000, 1, SPEED);
 	slip(500);
 	rig_follow_to(7845, 1, SPEED);
 	rig_ticks(2);
 	TEST_ASSERT_TRUE(los2(LW_PLUS));
-	TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, rig.controller->los2[LW_PLUS].count);
-	TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, rig.controller->los_recoveries);
+	TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, rig.controller->los.los2[LW_PLUS].count);
+	TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, rig.controller->los.recoveries);
 }
 
 static void test_a_correction_held_is_made_when_tracking_ends(void)
@@ -408,6 +460,71 @@ static void test_a_hand_over_beyond_the_switch_is_no_los(void)
 	assert_no_los();
 }
 
+/* A carriage that was believed at one end and found at the other, far apart on a fine screw. */
+static void test_a_correction_beyond_16_bits_is_made_at_rest(void)
+{
+	rig_track();
+	rig_rest();
+
+	struct lw_motion *motion = &rig.controller->motion;
+	const int32_t before_usteps = lw_law_pos_usteps(lw_motion_m(motion));
+
+	motion->request_correction_usteps = 40000;
+	lw_motion_request(motion, LW_MOTION_REQUEST_CORRECTION);
+	lw_controller_stop(rig.controller);
+	TEST_ASSERT_EQUAL_INT32(before_usteps + 40000, lw_law_pos_usteps(lw_motion_m(motion)));
+}
+
+static void test_a_switch_that_is_still_bouncing_when_the_reversal_begins_is_waited_for(void)
+{
+	/* It closes 5 microsteps before the reversal: 155 off, told by 5 ms of debouncing later. */
+	FOR_EACH_SIDE(side) {
+		const int toward = lw_side_direction(side);
+
+		rig_prepare(0);
+		rig.params.switch_contacts = LW_SWITCH_CONTACTS_SINGLE_NO;
+		rig.params.park_at = LW_PARK_AT_POSITION;
+		rig.params.handover_direction = side;
+		rig_track();
+		rig_follow_to(toward * 1000, toward, SPEED);
+		slip(-toward * 155);
+		rig_follow_to(toward * 7840, toward, SPEED);
+		rig_ticks(10);
+		TEST_ASSERT_FALSE(los1(side));
+		TEST_ASSERT_TRUE(los2(side));
+	}
+}
+
+static void test_a_trigger_at_its_tolerance_is_within_it(void)
+{
+	FOR_EACH_SIDE(side) {
+		for (int way = -1; way <= 1; way += 2) {
+			for (int32_t off_usteps = 100; off_usteps <= 101; off_usteps++) {
+				const int toward = lw_side_direction(side);
+
+				go_to_the_middle(side, 1);
+				slip(-rig_error_usteps() - way * off_usteps);
+				rig_follow_to(toward * 7840, toward, SPEED);
+				rig_ticks(2);
+				TEST_ASSERT_EQUAL(off_usteps > 100, los2(side));
+				TEST_ASSERT_FALSE(los1(side));
+			}
+		}
+	}
+}
+
+static void test_the_pattern_is_counted_from_each_hand_over(void)
+{
+	rig_track();
+	rig_drive(1000);
+	rig_rest();
+	TEST_ASSERT_EQUAL_INT64(1000, lw_motion_read(&rig.controller->motion).pattern_edges);
+	lw_controller_stop(rig.controller);
+	lw_controller_set_mode(rig.controller, LW_MODE_TRACK);
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_EQUAL_INT64(0, lw_motion_read(&rig.controller->motion).pattern_edges);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -419,6 +536,8 @@ int main(void)
 	RUN_TEST(test_los2_of_a_carriage_that_lags_is_found_in_the_reversal);
 	RUN_TEST(test_a_second_trigger_before_the_correction_is_corrected_once);
 	RUN_TEST(test_within_the_tolerance_nothing_happens);
+	RUN_TEST(test_a_late_switch_is_judged_and_re_indexed_where_it_was_reached);
+	RUN_TEST(test_a_late_switch_may_tell_in_the_reversal);
 	RUN_TEST(test_a_trigger_counts_only_toward_its_switch);
 	RUN_TEST(test_only_an_index_clears_los);
 	RUN_TEST(test_recoveries_have_a_limit);
@@ -429,5 +548,9 @@ int main(void)
 	RUN_TEST(test_trim_while_parked_on_the_orbit_and_elsewhere);
 	RUN_TEST(test_a_trim_and_a_held_correction_together);
 	RUN_TEST(test_a_hand_over_beyond_the_switch_is_no_los);
+	RUN_TEST(test_a_correction_beyond_16_bits_is_made_at_rest);
+	RUN_TEST(test_a_switch_that_is_still_bouncing_when_the_reversal_begins_is_waited_for);
+	RUN_TEST(test_a_trigger_at_its_tolerance_is_within_it);
+	RUN_TEST(test_the_pattern_is_counted_from_each_hand_over);
 	return UNITY_END();
 }

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The Modbus map of the level wind controller: tables for its master.
  * Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
@@ -14,14 +15,24 @@ static const struct levelwind_value state_values[] = {
 	{5, "parking", "Indexing: coming to rest at the parking place"},
 	{
 		6, "ready",
-		"Indexed and at rest. Follows the drum as soon as the mode is track and the drum is at rest",
+		"Indexed and at rest. In mode track it follows the drum once that rests; after a stop, write the mode again",
 	},
 	{7, "tracking", "Following the drum"},
-	{8, "centring", "Moving to the centre, or back into the sweep before a hand-over"},
-	{9, "centred", "Held at the centre, the drum is not followed"},
+	{
+		8, "centring",
+		"Moving to the centre, to where the rope goes on, or back into the sweep before a hand-over",
+	},
+	{
+		9, "centred",
+		"Held at the centre, the drum is not followed. For a launch set the mode to track",
+	},
 	{10, "jogging", "Moving by hand"},
-	{11, "off", "Stepper without current, position unknown"},
+	{11, "off", "Stepper without current, position unknown. Set the mode to track, then index"},
 	{12, "fault", "Stopped by a fault, see the register fault"},
+	{
+		13, "reacquiring",
+		"Taking up a turning drum after a restart in a launch: on the way to a limit switch, place unknown",
+	},
 };
 
 static const struct levelwind_value mode_values[] = {
@@ -46,7 +57,7 @@ static const struct levelwind_value fault_values[] = {
 	},
 	{
 		4, "both_switches_active",
-		"Both limit switches are active at once. Check the switch wiring",
+		"Both limit switches, or both overtravel switches, are active at once. Check the switch wiring",
 	},
 	{
 		5, "back_off_no_release",
@@ -62,11 +73,11 @@ static const struct levelwind_value fault_values[] = {
 	},
 	{
 		8, "overtravel_plus",
-		"Plus overtravel switch: stepper disabled, only motion toward minus is allowed",
+		"Plus overtravel switch: stepper disabled, only motion toward minus is allowed. If the carriage is not there, check this switch and its wire",
 	},
 	{
 		9, "overtravel_minus",
-		"Minus overtravel switch: stepper disabled, only motion toward plus is allowed",
+		"Minus overtravel switch: stepper disabled, only motion toward plus is allowed. If the carriage is not there, check this switch and its wire",
 	},
 	{
 		10, "overspeed",
@@ -76,6 +87,14 @@ static const struct levelwind_value fault_values[] = {
 	{
 		12, "stepper_alarm",
 		"The stepper driver reports an alarm: steps may be lost. Look at the driver, then index again",
+	},
+	{
+		13, "reacquire_no_switch",
+		"Taking up a turning drum: no limit switch within the travel. Is the carriage free, is the stepper powered?",
+	},
+	{
+		14, "reacquire_wrong_switch",
+		"Taking up a turning drum: the opposite switch came. Check the stepper direction and which switch is which",
 	},
 };
 
@@ -96,6 +115,23 @@ static const struct levelwind_value command_values[] = {
 	{
 		10, "try_line",
 		"Use the active line settings now; the old ones again if no valid request comes within line_confirm_s",
+	},
+	{
+		11, "acknowledge_rope",
+		"Somebody has looked at the rope that was laid while the carriage stood; taken after an indexing only",
+	},
+	{12, "set_rope", "So much rope is on the drum: set_rope_mm. The drum must be at rest"},
+	{
+		13, "trim_early",
+		"Reverse earlier at the side that the carriage moves toward: by trim_step_um, while tracking",
+	},
+	{
+		14, "trim_late",
+		"Reverse later at the side that the carriage moves toward: by trim_step_um, while tracking",
+	},
+	{
+		15, "reacquire",
+		"Take up a turning drum from rest, after a restart in a launch: to the first limit switch, then on. The position must be unknown",
 	},
 	{30, "cam_check", "Check the uploaded cam table as a whole, and keep it"},
 	{
@@ -123,7 +159,10 @@ static const struct levelwind_value reason_values[] = {
 	{6, "bad_count", "The count is zero or too large for this function"},
 	{7, "bad_length", "The request is shorter or longer than its function and count say"},
 	{8, "bad_coil_value", "A coil is written with 0x0000 or 0xFF00"},
-	{9, "several_commands", "One request can carry one command only"},
+	{
+		9, "several_commands",
+		"One request can give one command or jog, and a new trim beside neither a jog nor a trim command: send the other by itself",
+	},
 	{
 		10, "busy_tracking",
 		"Refused while tracking: stop, or set the mode to centre with the drum at rest",
@@ -180,7 +219,7 @@ static const struct levelwind_value reason_values[] = {
 	},
 	{
 		42, "position_overflow",
-		"A position is beyond 32767 microsteps: fewer microsteps per revolution or a shorter travel",
+		"A position or the travel is beyond 32700 microsteps: fewer microsteps per revolution or a shorter travel",
 	},
 	{43, "travel_too_short", "travel must be at least the distance between the flanges"},
 	{44, "overspeed_limits_crossed", "overspeed_warning must not be above overspeed_trip"},
@@ -191,7 +230,21 @@ static const struct levelwind_value reason_values[] = {
 	{46, "too_few_edges", "The encoder ratio gives less than one edge per drum revolution"},
 	{
 		47, "debounce_too_long",
-		"At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced",
+		"At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced (and switch_delay_us is over)",
+	},
+	{
+		48, "breaker_one_cycle",
+		"breaker_cycles must be 0 (no ribbon breaker) or at least 2: up and down takes two",
+	},
+	{49, "core_thinner_than_rope", "The bare drum cannot be thinner than the rope"},
+	{50, "packing_too_small", "rope_packing_permille must be 0 (not known) or at least 100"},
+	{
+		51, "drum_narrower_than_rope",
+		"The rope is thicker than the drum is wide between the far points of the reversals",
+	},
+	{
+		52, "switch_delay_too_long",
+		"At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch tells (switch_delay_us)",
 	},
 	{60, "locked", "The write lock is closed: write the code to the register unlock"},
 	{61, "wrong_code", "This is not the code of the write lock"},
@@ -259,6 +312,38 @@ static const struct levelwind_value reason_values[] = {
 		88, "cam_advances",
 		"A cam table that advances leaves the flanges behind: it needs cam_axis free",
 	},
+	{
+		90, "encoder_doubtful",
+		"One encoder channel changes and the other one does not follow: the drum may be turning. Wait until it rests; if it rests, look at the encoder and its wires",
+	},
+	{91, "drum_running", "The master says that the drum turns: write drum_running 0 first"},
+	{
+		96, "rope_index_first",
+		"Look at the rope and index first: rope laid while the carriage stood is acknowledged after an indexing",
+	},
+	{
+		97, "rope_not_described",
+		"Metres of rope need rope_diameter_um, drum_core_diameter_um and rope_packing_permille: set them, apply, then set_rope",
+	},
+	{
+		98, "rope_length_missing",
+		"Write set_rope_mm first: so many millimetres of rope are on the drum",
+	},
+	{
+		99, "rope_too_long",
+		"So much rope does not go onto this drum: check set_rope_mm, drum_core_diameter_um and rope_packing_permille",
+	},
+	{
+		100, "trim_not_following",
+		"Only a carriage that follows the drum by the reversing screw has a reversal to make earlier or later",
+	},
+	{101, "drum_at_rest", "The drum must turn for this; at rest give index"},
+	{
+		102, "position_known",
+		"The position is known: write mode track, and the drum is followed once it rests",
+	},
+	{103, "fault_stands", "A fault stands: remove its cause, then clear_fault first"},
+	{104, "not_mode_track", "Only in mode track with motion_profile screw"},
 };
 
 static const struct levelwind_value host_values[] = {
@@ -306,6 +391,26 @@ static const struct levelwind_value slot_state_values[] = {
 	{5, "refused", "An intact parameter set that this firmware does not accept: not used"},
 };
 
+static const struct levelwind_value encoder_fault_values[] = {
+	{0, "none", "Nothing"},
+	{1, "a_still", "Channel A stands still while channel B changes"},
+	{2, "b_still", "Channel B stands still while channel A changes"},
+	{
+		3, "a_flickers",
+		"Channel A does not follow channel B: a loose wire, or a drum that chatters",
+	},
+	{
+		4, "b_flickers",
+		"Channel B does not follow channel A: a loose wire, or a drum that chatters",
+	},
+	{5, "illegal", "Both channels change at once more often than encoder_illegal_permille"},
+	{6, "index_misfit", "The index pulses do not fit the edges: edges are lost, or too many"},
+	{
+		7, "no_edges",
+		"The master says that the drum turns (drum_running), and no edge came for drum_watch_ms",
+	},
+};
+
 static const struct levelwind_value motion_profile_values[] = {
 	{0, "screw", "The reversing screw: level winding"},
 	{1, "cam", "The active cam table"},
@@ -344,7 +449,7 @@ static const struct levelwind_value cam_interpolation_values[] = {
 	{1, "trapezoid", "At rest in every row: ramp up, plateau, ramp down"},
 };
 
-static const struct levelwind_value flag_values[] = {
+static const struct levelwind_value flags_values[] = {
 	{0, "indexed", "The position is known"},
 	{1, "tracking", "The carriage follows the drum"},
 	{2, "launch_permit", "A launch may begin; see launch_inhibit if not"},
@@ -353,7 +458,7 @@ static const struct levelwind_value flag_values[] = {
 	{5, "faulted", "Stopped by a fault"},
 	{
 		6, "los",
-		"Any loss of synchronization since the last indexing: the rope may be laid wrong",
+		"Any loss of synchronization since the last indexing, also before a power cut: the rope may be laid wrong",
 	},
 	{
 		7, "los1_plus",
@@ -404,19 +509,95 @@ static const struct levelwind_value flag_values[] = {
 };
 
 static const struct levelwind_value launch_inhibit_values[] = {
-	{0, "not_tracking", "The state is not tracking"},
-	{1, "los", "Synchronization was lost: index again"},
-	{2, "fault", "A fault stands"},
-	{3, "wiring", "A limit switch has a wiring fault"},
-	{4, "overtravel", "An overtravel switch is actuated"},
-	{5, "overspeed", "The drum tripped the overspeed limit"},
-	{6, "master_lost", "The Modbus master is silent"},
-	{7, "correction", "A re-index correction is pending"},
-	{8, "stepper_alarm", "The stepper driver reports an alarm"},
-	{9, "cam", "The motion profile is cam and its table cannot be followed; see cam_reason"},
+	{0, "not_tracking", "The carriage does not follow the drum: the state says what to do"},
+	{1, "los", "Synchronization was lost: look at the rope first, then index"},
+	{2, "fault", "A fault stands: remove its cause, then index"},
+	{3, "wiring", "A limit switch has a wiring fault: mend it, then clear_fault"},
+	{
+		4, "overtravel",
+		"An overtravel switch is actuated: index moves the carriage off it, or check the switch and its wire",
+	},
+	{5, "overspeed", "The drum tripped the overspeed limit: stop it, then index"},
+	{6, "master_lost", "The Modbus master is silent: check the panel or PLC and its line"},
+	{
+		7, "correction",
+		"A re-index correction waits for the sweep: turn the drum slowly until it is made, or index",
+	},
+	{8, "stepper_alarm", "The stepper driver reports an alarm: look at the driver, then index"},
+	{
+		9, "cam",
+		"The motion profile is cam and its table cannot be followed, see cam_reason: upload another, or set motion_profile to screw",
+	},
+	{
+		10, "set_unconfirmed",
+		"The factory values are in force, which describe another winch: set the parameters of this one, apply and save",
+	},
+	{
+		11, "rope_laid_standing",
+		"Rope was laid while the carriage stood: look at the rope, index, then acknowledge_rope",
+	},
+	{
+		12, "switch_implausible",
+		"A limit switch says what the known position makes impossible: look at both switches and their wires, then index",
+	},
+	{
+		13, "encoder",
+		"The encoder's signals do not fit the drum, or did not since the last indexing: rest the drum, check the encoder and its wires, look at the rope, then index",
+	},
 };
 
-static const int32_t allowed_command[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 30, 31, 32};
+static const struct levelwind_value flags_2_values[] = {
+	{
+		0, "set_unconfirmed",
+		"Real hardware with factory values that nobody has saved: they describe another winch",
+	},
+	{
+		1, "rope_laid_standing",
+		"Rope was laid while the carriage stood, also before a power cut: look at it, index, then acknowledge_rope",
+	},
+	{
+		2, "odometer_doubtful",
+		"The drum turned while the storage was written, so edges may be missing in rope_mm and net_edges (until an indexing)",
+	},
+	{
+		3, "switch_implausible",
+		"A limit switch says what the known position makes impossible: broken wire, stuck or moved switch",
+	},
+	{
+		4, "encoder_doubtful",
+		"One encoder channel changes without the other: the drum may turn unseen. Not sticky",
+	},
+	{
+		5, "encoder_fault",
+		"The encoder does not tell the drum's motion: a loss of synchronization, sticky until an indexing has succeeded",
+	},
+	{
+		6, "clock_fallback",
+		"The external clock of the processor is missing: it runs by its internal oscillator, which may be a few percent off",
+	},
+	{
+		7, "line_babble",
+		"Within the last 10 s bytes came on the line without a silence for more than a second",
+	},
+	{
+		8, "line_echo",
+		"Within the last 10 s the line gave back what was sent on it; that was dropped",
+	},
+	{
+		9, "rope_doubtful",
+		"The metres of rope on the drum may be wrong: not told since the power-up, or edges were lost. Give set_rope where they are known",
+	},
+	{
+		10, "resume_doubtful",
+		"The drum may have turned since it was kept where the rope goes on, or the carriage stood elsewhere: not gone to. Look where the rope leaves the drum",
+	},
+	{
+		11, "reacquired",
+		"After a restart in a launch a turning drum was taken up at an unknown place: a loss of synchronization, until an indexing has succeeded",
+	},
+};
+
+static const int32_t allowed_command[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 30, 31, 32};
 static const int32_t allowed_encoder_edges_per_pulse[] = {1, 2, 4};
 static const int32_t allowed_baud_rate[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 
@@ -426,7 +607,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Writing a code runs the command; reads the last one",
 		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_U16, .address = 0,
 		.words = 1, .min = 0, .max = 32, .default_value = 0, .allowed = allowed_command,
-		.allowed_count = 14, .values = command_values, .value_count = 14,
+		.allowed_count = 19, .values = command_values, .value_count = 19,
 	},
 	{
 		.name = "mode", .unit = "",
@@ -452,6 +633,18 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Live shift of reversal_minus, applied in the sweep only",
 		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_I16, .address = 4,
 		.words = 1, .min = -20000, .max = 20000, .default_value = 0,
+	},
+	{
+		.name = "drum_running", .unit = "",
+		.text = "1: the master says that the winch turns the drum; see drum_watch_ms",
+		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_U16, .address = 5,
+		.words = 1, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.name = "set_rope_mm", .unit = "mm",
+		.text = "What the command set_rope tells: so much rope is on the drum; -1: nothing was written",
+		.block = LEVELWIND_BLOCK_SETPOINTS, .type = LEVELWIND_TYPE_I32, .address = 6,
+		.words = 2, .min = -1, .max = 10000000, .default_value = -1,
 	},
 	{
 		.name = "unlock", .unit = "",
@@ -602,7 +795,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 	},
 	{
 		.name = "switch_transit_ms", .unit = "ms",
-		.text = "Both contacts open longer than this is a wiring fault",
+		.text = "Both contacts of a pair open, or a single contact not at rest, for longer than this is a wiring fault",
 		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 135,
 		.words = 1, .min = 1, .max = 90, .default_value = 20,
 	},
@@ -617,6 +810,12 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Carriage travel between the mechanical end stops",
 		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 137,
 		.words = 2, .min = 1000, .max = 600000, .default_value = 180000,
+	},
+	{
+		.name = "switch_delay_us", .unit = "us",
+		.text = "How late a limit switch tells that it was reached; `levelwind index --rates` measures it (0: at once)",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 139,
+		.words = 1, .min = 0, .max = 20000, .default_value = 0,
 	},
 	{
 		.name = "index_switch", .unit = "",
@@ -723,6 +922,18 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 1, .min = 0, .max = 10000, .default_value = 0,
 	},
 	{
+		.name = "breaker_millirev", .unit = "1/1000 drum rev",
+		.text = "Ribbon breaker: both dwells grow by up to this much and shrink again, from reversal to reversal of their side",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 168,
+		.words = 1, .min = 0, .max = 2000, .default_value = 0,
+	},
+	{
+		.name = "breaker_cycles", .unit = "",
+		.text = "Ribbon breaker: it goes up and down once in so many double traverses (0: off)",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 169,
+		.words = 1, .min = 0, .max = 200, .default_value = 0,
+	},
+	{
 		.name = "expert_mode", .unit = "",
 		.text = "1: the four raw_ values replace pitch, overshoot and reversal points",
 		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 170,
@@ -787,6 +998,72 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "How long try_line waits for a valid request",
 		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 187,
 		.words = 1, .min = 2, .max = 120, .default_value = 10,
+	},
+	{
+		.name = "encoder_watch_transitions_per_s", .unit = "transitions/s",
+		.text = "One encoder channel that changes faster than this without the other makes the encoder doubtful",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 190,
+		.words = 2, .min = 100, .max = 1000000, .default_value = 2000,
+	},
+	{
+		.name = "encoder_watch_ms", .unit = "ms",
+		.text = "An encoder that is doubtful for this long has a fault",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 192,
+		.words = 1, .min = 50, .max = 60000, .default_value = 500,
+	},
+	{
+		.name = "encoder_illegal_permille", .unit = "1/1000",
+		.text = "Of 1000 transitions so many may change both channels at once, before the encoder has a fault (1000: any)",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 193,
+		.words = 1, .min = 1, .max = 1000, .default_value = 10,
+	},
+	{
+		.name = "drum_watch_ms", .unit = "ms",
+		.text = "No edge for this long while drum_running is 1: the encoder has a fault (0: not watched)",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 194,
+		.words = 1, .min = 0, .max = 60000, .default_value = 0,
+	},
+	{
+		.name = "standing_turns_permille", .unit = "1/1000 drum rev",
+		.text = "Rope hauled in while the carriage stands sets rope_laid_standing from so many drum turns on (0: not watched)",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 199,
+		.words = 1, .min = 0, .max = 10000, .default_value = 250,
+	},
+	{
+		.name = "rope_diameter_um", .unit = "um",
+		.text = "Diameter of the rope (0: not known)", .block = LEVELWIND_BLOCK_PARAMETERS,
+		.type = LEVELWIND_TYPE_U16, .address = 200, .words = 1, .min = 0, .max = 50000,
+		.default_value = 0,
+	},
+	{
+		.name = "drum_core_diameter_um", .unit = "um",
+		.text = "Diameter of the bare drum (0: not known). With rope_diameter_um and rope_packing_permille, metres of rope follow the growing layers",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 201,
+		.words = 2, .min = 0, .max = 5000000, .default_value = 0,
+	},
+	{
+		.name = "rope_packing_permille", .unit = "1/1000",
+		.text = "How much of the room on the drum the rope fills, fitted from two known lengths; about 600 to 900 (0: not known)",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 203,
+		.words = 1, .min = 0, .max = 1000, .default_value = 0,
+	},
+	{
+		.name = "trim_step_um", .unit = "um",
+		.text = "How far trim_early and trim_late shift a reversal point",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 204,
+		.words = 1, .min = 1, .max = 5000, .default_value = 500,
+	},
+	{
+		.name = "resume", .unit = "",
+		.text = "1: where the drum came to rest is kept, also over a power-off, and after an indexing the carriage first goes there and takes up direction and slope; 0: it begins where the indexing ends",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 205,
+		.words = 1, .min = 0, .max = 1, .default_value = 0,
+	},
+	{
+		.name = "reacquire_after_restart", .unit = "",
+		.text = "1: where the controller has restarted in a launch (memory kept, the drum still turns), it gives reacquire by itself. THE CARRIAGE MOVES UNASKED",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 206,
+		.words = 1, .min = 0, .max = 1, .default_value = 0,
 	},
 	{
 		.name = "motion_profile", .unit = "",
@@ -874,10 +1151,21 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.values = host_values, .value_count = 4,
 	},
 	{
+		.name = "image_hash_high", .unit = "",
+		.text = "What runs: bytes 0 to 3 of the SHA-256 of zephyr.bin, worked out over the flash at power-up (0, and so the low half: not known, as on the simulators)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 7,
+		.words = 2, .offset = offsetof(struct levelwind_status, image_hash_high),
+	},
+	{
+		.name = "image_hash_low", .unit = "", .text = "Bytes 4 to 7 of it",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 9,
+		.words = 2, .offset = offsetof(struct levelwind_status, image_hash_low),
+	},
+	{
 		.name = "state", .unit = "", .text = "What the controller is doing",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 100,
 		.words = 1, .offset = offsetof(struct levelwind_status, state),
-		.values = state_values, .value_count = 13,
+		.values = state_values, .value_count = 14,
 	},
 	{
 		.name = "active_mode", .unit = "",
@@ -890,21 +1178,21 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "fault", .unit = "", .text = "Why the controller stopped",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 102,
 		.words = 1, .offset = offsetof(struct levelwind_status, fault),
-		.values = fault_values, .value_count = 13,
+		.values = fault_values, .value_count = 15,
 	},
 	{
 		.name = "flags", .unit = "",
-		.text = "All discrete inputs in one pair, bit number = discrete input address",
+		.text = "The first 32 discrete inputs, bit number = discrete input address",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 103,
 		.words = 2, .offset = offsetof(struct levelwind_status, flags),
-		.values = flag_values, .value_count = 32,
+		.values = flags_values, .value_count = 32,
 	},
 	{
 		.name = "launch_inhibit", .unit = "",
 		.text = "Why a launch is not permitted; 0 means launch permit",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 105,
 		.words = 1, .offset = offsetof(struct levelwind_status, launch_inhibit),
-		.values = launch_inhibit_values, .value_count = 10,
+		.values = launch_inhibit_values, .value_count = 14,
 	},
 	{
 		.name = "position_um", .unit = "um", .text = "Carriage position",
@@ -913,9 +1201,9 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 	},
 	{
 		.name = "position_usteps", .unit = "usteps",
-		.text = "Carriage position, whole microsteps", .block = LEVELWIND_BLOCK_STATUS,
-		.type = LEVELWIND_TYPE_I16, .address = 108, .words = 1,
-		.offset = offsetof(struct levelwind_status, position_usteps),
+		.text = "Carriage position, whole microsteps; a free axis goes on modulo 65536",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I16, .address = 108,
+		.words = 1, .offset = offsetof(struct levelwind_status, position_usteps),
 	},
 	{
 		.name = "m", .unit = "usteps/65536", .text = "Carriage position, Q16.16",
@@ -936,13 +1224,13 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 	},
 	{
 		.name = "rope_speed_mm_per_s", .unit = "mm/s",
-		.text = "Rope speed, positive hauls in", .block = LEVELWIND_BLOCK_STATUS,
-		.type = LEVELWIND_TYPE_I32, .address = 115, .words = 2,
-		.offset = offsetof(struct levelwind_status, rope_speed_mm_per_s),
+		.text = "Rope speed, positive hauls in; by rope_radius_um where that is known",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 115,
+		.words = 2, .offset = offsetof(struct levelwind_status, rope_speed_mm_per_s),
 	},
 	{
 		.name = "rope_mm", .unit = "mm",
-		.text = "Rope hauled in (positive) or paid out since power-up",
+		.text = "Rope hauled in (positive) or paid out since power-up, by the growing layers where the rope on the drum is known; stands still at its limits, 2147 km",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 117,
 		.words = 2, .offset = offsetof(struct levelwind_status, rope_mm),
 	},
@@ -959,7 +1247,8 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 4, .offset = offsetof(struct levelwind_status, pattern_edges),
 	},
 	{
-		.name = "uptime_ms", .unit = "ms", .text = "Time since power-up",
+		.name = "uptime_ms", .unit = "ms",
+		.text = "Time since power-up; begins anew at 0 after 49.7 days",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 127,
 		.words = 2, .offset = offsetof(struct levelwind_status, uptime_ms),
 	},
@@ -976,6 +1265,49 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 2, .offset = offsetof(struct levelwind_status, span_error_um),
 	},
 	{
+		.name = "flags_2", .unit = "",
+		.text = "The discrete inputs from 32 on, bit number = discrete input address - 32",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 132,
+		.words = 2, .offset = offsetof(struct levelwind_status, flags_2),
+		.values = flags_2_values, .value_count = 12,
+	},
+	{
+		.name = "rope_on_drum_mm", .unit = "mm",
+		.text = "Rope on the drum; 0 until set_rope. It may be wrong while rope_doubtful is on",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 134,
+		.words = 2, .offset = offsetof(struct levelwind_status, rope_on_drum_mm),
+	},
+	{
+		.name = "rope_out_mm", .unit = "mm",
+		.text = "Rope wound off since set_rope: what is out, if it was told with all rope in",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 136,
+		.words = 2, .offset = offsetof(struct levelwind_status, rope_out_mm),
+	},
+	{
+		.name = "rope_layer", .unit = "",
+		.text = "Layers of rope on the drum, begun ones too; 0: bare, or not known",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 138,
+		.words = 1, .offset = offsetof(struct levelwind_status, rope_layer),
+	},
+	{
+		.name = "rope_radius_um", .unit = "um",
+		.text = "Radius of what is wound, from the drum's axis; 0: not known",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 139,
+		.words = 2, .offset = offsetof(struct levelwind_status, rope_radius_um),
+	},
+	{
+		.name = "resume_position_um", .unit = "um",
+		.text = "Where the rope goes on: carriage position when the drum came to rest, also before a power-off; 0 while resume_direction is 0",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 141,
+		.words = 2, .offset = offsetof(struct levelwind_status, resume_position_um),
+	},
+	{
+		.name = "resume_direction", .unit = "",
+		.text = "Direction of the carriage there while the drum hauls in: +1 or -1; 0: not known, or resume is 0",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I16, .address = 143,
+		.words = 1, .offset = offsetof(struct levelwind_status, resume_direction),
+	},
+	{
 		.name = "los1_plus_count", .unit = "", .text = "LOS type 1+ since power-up",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 200,
 		.words = 1, .offset = offsetof(struct levelwind_status, los1_plus_count),
@@ -987,7 +1319,8 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 2, .offset = offsetof(struct levelwind_status, los1_plus_position_um),
 	},
 	{
-		.name = "los1_plus_time_ms", .unit = "ms", .text = "Its time since power-up",
+		.name = "los1_plus_time_ms", .unit = "ms",
+		.text = "Its time since power-up, of that power-up",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 203,
 		.words = 2, .offset = offsetof(struct levelwind_status, los1_plus_time_ms),
 	},
@@ -1003,7 +1336,8 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 2, .offset = offsetof(struct levelwind_status, los1_minus_position_um),
 	},
 	{
-		.name = "los1_minus_time_ms", .unit = "ms", .text = "Its time since power-up",
+		.name = "los1_minus_time_ms", .unit = "ms",
+		.text = "Its time since power-up, of that power-up",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 213,
 		.words = 2, .offset = offsetof(struct levelwind_status, los1_minus_time_ms),
 	},
@@ -1019,7 +1353,8 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 2, .offset = offsetof(struct levelwind_status, los2_plus_position_um),
 	},
 	{
-		.name = "los2_plus_time_ms", .unit = "ms", .text = "Its time since power-up",
+		.name = "los2_plus_time_ms", .unit = "ms",
+		.text = "Its time since power-up, of that power-up",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 223,
 		.words = 2, .offset = offsetof(struct levelwind_status, los2_plus_time_ms),
 	},
@@ -1035,7 +1370,8 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 2, .offset = offsetof(struct levelwind_status, los2_minus_position_um),
 	},
 	{
-		.name = "los2_minus_time_ms", .unit = "ms", .text = "Its time since power-up",
+		.name = "los2_minus_time_ms", .unit = "ms",
+		.text = "Its time since power-up, of that power-up",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 233,
 		.words = 2, .offset = offsetof(struct levelwind_status, los2_minus_time_ms),
 	},
@@ -1113,7 +1449,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 	},
 	{
 		.name = "log_unsaved", .unit = "",
-		.text = "Event log: events that are not stored yet; they wait for the end of the tracking",
+		.text = "Event log: events that are not stored yet; they wait until the drum rests",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 325,
 		.words = 1, .offset = offsetof(struct levelwind_status, log_unsaved),
 	},
@@ -1212,6 +1548,107 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.offset = offsetof(struct levelwind_status, stack_free_interrupts_bytes),
 	},
 	{
+		.name = "encoder_fault_kind", .unit = "",
+		.text = "What was wrong with the encoder first since the last indexing (and since the power-up)",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 360,
+		.words = 1, .offset = offsetof(struct levelwind_status, encoder_fault_kind),
+		.values = encoder_fault_values, .value_count = 8,
+	},
+	{
+		.name = "encoder_fault_count", .unit = "", .text = "Encoder faults since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 361,
+		.words = 1, .offset = offsetof(struct levelwind_status, encoder_fault_count),
+	},
+	{
+		.name = "encoder_fault_position_um", .unit = "um",
+		.text = "Position of the first since the last indexing",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 362,
+		.words = 2, .offset = offsetof(struct levelwind_status, encoder_fault_position_um),
+	},
+	{
+		.name = "encoder_fault_time_ms", .unit = "ms", .text = "Its time since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 364,
+		.words = 2, .offset = offsetof(struct levelwind_status, encoder_fault_time_ms),
+	},
+	{
+		.name = "encoder_doubts", .unit = "",
+		.text = "How often the encoder became doubtful since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 366,
+		.words = 1, .offset = offsetof(struct levelwind_status, encoder_doubts),
+	},
+	{
+		.name = "encoder_misfit_edges", .unit = "edges",
+		.text = "By how many edges the index pulses contradict the count, net, since the last indexing",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 367,
+		.words = 2, .offset = offsetof(struct levelwind_status, encoder_misfit_edges),
+	},
+	{
+		.name = "memory_corrections", .unit = "",
+		.text = "Bits of the active parameters and of the law in force that had flipped in memory and were set right since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 369,
+		.words = 1, .offset = offsetof(struct levelwind_status, memory_corrections),
+	},
+	{
+		.name = "line_babbles", .unit = "",
+		.text = "Times that bytes came on the line without a silence for more than a second, since power-up",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 380,
+		.words = 2, .offset = offsetof(struct levelwind_status, line_babbles),
+	},
+	{
+		.name = "line_echoes", .unit = "",
+		.text = "Own answers that the line gave back, dropped",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 382,
+		.words = 2, .offset = offsetof(struct levelwind_status, line_echoes),
+	},
+	{
+		.name = "late_requests", .unit = "",
+		.text = "Requests that had waited too long and were dropped",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 384,
+		.words = 2, .offset = offsetof(struct levelwind_status, late_requests),
+	},
+	{
+		.name = "foreign_answers", .unit = "",
+		.text = "Answers of another device as this unit, dropped: two devices have this unit_id, or an echo comes late",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 386,
+		.words = 2, .offset = offsetof(struct levelwind_status, foreign_answers),
+	},
+	{
+		.name = "events_skipped", .unit = "",
+		.text = "Events that were not logged because their cause comes and goes too often",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 388,
+		.words = 2, .offset = offsetof(struct levelwind_status, events_skipped),
+	},
+	{
+		.name = "rope_standing_millirev", .unit = "1/1000 drum rev",
+		.text = "Drum turns of rope laid while the carriage stood, since the last acknowledgement",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 390,
+		.words = 2, .offset = offsetof(struct levelwind_status, rope_standing_millirev),
+	},
+	{
+		.name = "rope_standing_position_um", .unit = "um",
+		.text = "Where the carriage stood at the first of them",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_I32, .address = 392,
+		.words = 2, .offset = offsetof(struct levelwind_status, rope_standing_position_um),
+	},
+	{
+		.name = "rope_standing_time_ms", .unit = "ms",
+		.text = "When, since power-up, of that power-up", .block = LEVELWIND_BLOCK_STATUS,
+		.type = LEVELWIND_TYPE_U32, .address = 394, .words = 2,
+		.offset = offsetof(struct levelwind_status, rope_standing_time_ms),
+	},
+	{
+		.name = "rope_standing_place_known", .unit = "",
+		.text = "1: that position was known; 0: the position had been unknown before",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 396,
+		.words = 1, .offset = offsetof(struct levelwind_status, rope_standing_place_known),
+	},
+	{
+		.name = "look_before_power_up", .unit = "",
+		.text = "What needs a look at the rope since before this power-up: 1 LOS 1+, 2 LOS 1-, 4 LOS 2+, 8 LOS 2-, 16 rope laid while the carriage stood, 32 encoder fault, 64 re-acquired",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 397,
+		.words = 1, .offset = offsetof(struct levelwind_status, look_before_power_up),
+	},
+	{
 		.name = "command_sequence", .unit = "",
 		.text = "Counts every command, also refused ones", .block = LEVELWIND_BLOCK_STATUS,
 		.type = LEVELWIND_TYPE_U16, .address = 400, .words = 1,
@@ -1221,7 +1658,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_code", .unit = "", .text = "The last command",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 401,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_code),
-		.values = command_values, .value_count = 14,
+		.values = command_values, .value_count = 19,
 	},
 	{
 		.name = "command_result", .unit = "", .text = "How it ended",
@@ -1233,7 +1670,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "command_reason", .unit = "", .text = "Why it was refused or failed",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 403,
 		.words = 1, .offset = offsetof(struct levelwind_status, command_reason),
-		.values = reason_values, .value_count = 67,
+		.values = reason_values, .value_count = 83,
 	},
 	{
 		.name = "command_address", .unit = "",
@@ -1256,7 +1693,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Why the last refused request was refused", .block = LEVELWIND_BLOCK_STATUS,
 		.type = LEVELWIND_TYPE_U16, .address = 410, .words = 1,
 		.offset = offsetof(struct levelwind_status, last_error_reason),
-		.values = reason_values, .value_count = 67,
+		.values = reason_values, .value_count = 83,
 	},
 	{
 		.name = "last_error_function", .unit = "", .text = "Its function code",
@@ -1347,6 +1784,23 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 2, .offset = offsetof(struct levelwind_status, dwell_minus_edges),
 	},
 	{
+		.name = "breaker_edges", .unit = "edges",
+		.text = "Ribbon breaker: most that it adds to a dwell",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 520,
+		.words = 2, .offset = offsetof(struct levelwind_status, breaker_edges),
+	},
+	{
+		.name = "breaker_cycle_plus", .unit = "",
+		.text = "Ribbon breaker: far points passed at plus since the hand-over after the last indexing, net, modulo breaker_cycles",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 522,
+		.words = 1, .offset = offsetof(struct levelwind_status, breaker_cycle_plus),
+	},
+	{
+		.name = "breaker_cycle_minus", .unit = "", .text = "Ribbon breaker: those at minus",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 523,
+		.words = 1, .offset = offsetof(struct levelwind_status, breaker_cycle_minus),
+	},
+	{
 		.name = "cam_bank_0_state", .unit = "",
 		.text = "What the first bank of cam tables holds", .block = LEVELWIND_BLOCK_STATUS,
 		.type = LEVELWIND_TYPE_U16, .address = 600, .words = 1,
@@ -1365,7 +1819,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "Why the last check of a cam table refused it, or why the active one cannot be followed",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 602,
 		.words = 1, .offset = offsetof(struct levelwind_status, cam_reason),
-		.values = reason_values, .value_count = 67,
+		.values = reason_values, .value_count = 83,
 	},
 	{
 		.name = "cam_reason_row", .unit = "",
@@ -1459,6 +1913,20 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.name = "slot_5", .unit = "", .text = "Storage: second slot of cam tables",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 628,
 		.words = 1, .offset = offsetof(struct levelwind_status, slot_5),
+		.values = slot_state_values, .value_count = 6,
+	},
+	{
+		.name = "slot_6", .unit = "",
+		.text = "Storage: first slot of what needs a look at the rope",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 629,
+		.words = 1, .offset = offsetof(struct levelwind_status, slot_6),
+		.values = slot_state_values, .value_count = 6,
+	},
+	{
+		.name = "slot_7", .unit = "",
+		.text = "Storage: second slot of what needs a look at the rope",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 630,
+		.words = 1, .offset = offsetof(struct levelwind_status, slot_7),
 		.values = slot_state_values, .value_count = 6,
 	},
 	{

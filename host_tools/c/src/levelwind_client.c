@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #define _POSIX_C_SOURCE 200809L
 
 #include "levelwind_client.h"
@@ -11,6 +12,9 @@
 
 #define COMMAND_POLL_MS 20
 #define NO_ADDRESS      65535
+#define FLAGS_EACH      32 /* in a pair of registers */
+/* Without an answer for so long a line is dead: the controller is mute for 1 to 2 s at times. */
+#define DEAD_LINE_MS    3000
 
 /* The groups of registers that tell how a command and how a refused request ended. */
 #define RESULT_START LEVELWIND_ADDRESS_COMMAND_SEQUENCE
@@ -51,6 +55,19 @@ const char *levelwind_value_text(const char *point_name, int32_t value)
 		}
 	}
 	return "";
+}
+
+bool levelwind_has_flag(const struct levelwind_status *status, enum levelwind_flag flag)
+{
+	return (flag < FLAGS_EACH ? status->flags >> flag
+				  : status->flags_2 >> (flag - FLAGS_EACH)) &
+	       1;
+}
+
+const char *levelwind_flag_text(enum levelwind_flag flag)
+{
+	return flag < FLAGS_EACH ? levelwind_value_text("flags", (int32_t)flag)
+				 : levelwind_value_text("flags_2", (int32_t)flag - FLAGS_EACH);
 }
 
 static int32_t to_i32(const uint16_t *words)
@@ -162,14 +179,14 @@ static int explain_exception(struct levelwind_client *client, const char *what, 
 	return fail(client, error, "%s refused: Modbus exception %d", what, exception);
 }
 
-/* A libmodbus call failed and has set errno. */
-static int request_failed(struct levelwind_client *client, const char *what, int function)
+static bool is_exception(int error)
 {
-	int error = errno;
+	return error > MODBUS_ENOBASE && error < MODBUS_ENOBASE + MODBUS_EXCEPTION_MAX;
+}
 
-	if (error > MODBUS_ENOBASE && error < MODBUS_ENOBASE + MODBUS_EXCEPTION_MAX) {
-		return explain_exception(client, what, function, error - MODBUS_ENOBASE);
-	}
+/* A libmodbus call got no good answer and has set errno to `error`, which is no exception. */
+static int no_answer(struct levelwind_client *client, int error, const char *what)
+{
 	if (error == ETIMEDOUT) {
 		return fail(client, error,
 			    "%s: unit %d on %s does not answer within %d ms. Check its power, the "
@@ -177,12 +194,49 @@ static int request_failed(struct levelwind_client *client, const char *what, int
 			    what, client->line.unit_id, client->line.port,
 			    client->line.response_timeout_ms);
 	}
+	if (error == ECONNRESET) {
+		return fail(client, EIO, "%s: %s is gone. Check the adapter", what,
+			    client->line.port);
+	}
 	if (error > MODBUS_ENOBASE) {
 		return fail(client, EIO,
 			    "%s: damaged answer on %s (%s). Check wiring, termination and parity",
 			    what, client->line.port, modbus_strerror(error));
 	}
 	return fail(client, error, "%s: %s: %s", what, client->line.port, modbus_strerror(error));
+}
+
+/* A libmodbus call that reads failed and has set errno. */
+static int read_failed(struct levelwind_client *client, const char *what, int function)
+{
+	int error = errno;
+
+	if (is_exception(error)) {
+		return explain_exception(client, what, function, error - MODBUS_ENOBASE);
+	}
+	return no_answer(client, error, what);
+}
+
+/* Put `text` behind what there is to say. */
+static int but(struct levelwind_client *client, int error, const char *text)
+{
+	size_t length = strlen(client->error_text);
+
+	(void)snprintf(client->error_text + length, sizeof(client->error_text) - length, "%s",
+		       text);
+	return -error;
+}
+
+/* A libmodbus call that writes failed and has set errno. Only an exception says: not done. */
+static int write_failed(struct levelwind_client *client, const char *what, int function)
+{
+	int error = errno;
+
+	if (is_exception(error)) {
+		return explain_exception(client, what, function, error - MODBUS_ENOBASE);
+	}
+	(void)no_answer(client, error, what);
+	return but(client, ECONNABORTED, ". It was sent and may have been done");
 }
 
 /* ---- requests ------------------------------------------------------------------------------- */
@@ -194,7 +248,7 @@ static int read_inputs(struct levelwind_client *client, const char *what, uint16
 {
 	(void)modbus_flush(client->modbus);
 	if (modbus_read_input_registers(client->modbus, address, count, words) != count) {
-		return request_failed(client, what, MODBUS_FC_READ_INPUT_REGISTERS);
+		return read_failed(client, what, MODBUS_FC_READ_INPUT_REGISTERS);
 	}
 	return 0;
 }
@@ -204,7 +258,7 @@ static int read_holdings(struct levelwind_client *client, const char *what, uint
 {
 	(void)modbus_flush(client->modbus);
 	if (modbus_read_registers(client->modbus, address, count, words) != count) {
-		return request_failed(client, what, MODBUS_FC_READ_HOLDING_REGISTERS);
+		return read_failed(client, what, MODBUS_FC_READ_HOLDING_REGISTERS);
 	}
 	return 0;
 }
@@ -214,7 +268,7 @@ static int write_holdings(struct levelwind_client *client, const char *what, uin
 {
 	(void)modbus_flush(client->modbus);
 	if (modbus_write_registers(client->modbus, address, count, words) != count) {
-		return request_failed(client, what, MODBUS_FC_WRITE_MULTIPLE_REGISTERS);
+		return write_failed(client, what, MODBUS_FC_WRITE_MULTIPLE_REGISTERS);
 	}
 	return 0;
 }
@@ -305,14 +359,14 @@ static int read_status_run(struct levelwind_client *client, size_t *index,
 	return 0;
 }
 
-static size_t first_status_index(void)
+static size_t index_of(const char *name)
 {
-	return (size_t)(levelwind_find_point("self_test") - levelwind_points);
+	return (size_t)(levelwind_find_point(name) - levelwind_points);
 }
 
 int levelwind_identify(struct levelwind_client *client, struct levelwind_status *status)
 {
-	size_t index = first_status_index();
+	size_t index = index_of("self_test");
 	int error = read_status_run(client, &index, status);
 
 	if (error != 0) {
@@ -335,9 +389,16 @@ int levelwind_identify(struct levelwind_client *client, struct levelwind_status 
 	return 0;
 }
 
+int levelwind_read_live(struct levelwind_client *client, struct levelwind_status *status)
+{
+	size_t index = index_of("state");
+
+	return read_status_run(client, &index, status);
+}
+
 int levelwind_read_status(struct levelwind_client *client, struct levelwind_status *status)
 {
-	size_t index = first_status_index();
+	size_t index = index_of("self_test");
 	int error = 0;
 
 	while (error == 0 && index < LEVELWIND_POINT_COUNT &&
@@ -401,6 +462,11 @@ int levelwind_jog(struct levelwind_client *client, int direction)
 	return write_point(client, "jog", levelwind_find_point("jog"), direction);
 }
 
+int levelwind_set_drum_running(struct levelwind_client *client, int running)
+{
+	return write_point(client, "drum_running", levelwind_find_point("drum_running"), running);
+}
+
 int levelwind_set_trim(struct levelwind_client *client, int32_t plus_um, int32_t minus_um)
 {
 	const uint16_t words[] = {(uint16_t)plus_um, (uint16_t)minus_um};
@@ -428,6 +494,14 @@ static int64_t monotonic_ms(void)
 	return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
 }
 
+static void pause_ms(int duration_ms)
+{
+	const struct timespec pause = {.tv_sec = duration_ms / 1000,
+				       .tv_nsec = duration_ms % 1000 * 1000000L};
+
+	(void)nanosleep(&pause, NULL);
+}
+
 static int read_result(struct levelwind_client *client, const char *what,
 		       struct levelwind_command_result *result)
 {
@@ -449,33 +523,124 @@ static int read_result(struct levelwind_client *client, const char *what,
 	return 0;
 }
 
-/* Wait until the command after `sequence` has ended. */
-static int await_result(struct levelwind_client *client, const char *what, uint16_t sequence,
-			int timeout_ms, struct levelwind_command_result *result)
+static const char *command_name(enum levelwind_command command)
 {
-	const struct timespec pause = {.tv_nsec = COMMAND_POLL_MS * 1000000L};
-	int64_t deadline_ms = monotonic_ms() + timeout_ms;
+	const struct levelwind_point *point = levelwind_find_point("command");
 
-	for (;;) {
-		int error = read_result(client, what, result);
+	for (size_t i = 0; i < point->value_count; i++) {
+		if (point->values[i].value == (int32_t)command) {
+			return point->values[i].name;
+		}
+	}
+	return point->name;
+}
 
+/* Has the controller run without a restart since `since_ms`? 0: it has. */
+static int read_restarted(struct levelwind_client *client, const char *what, int64_t since_ms,
+			  bool *restarted)
+{
+	uint16_t words[2];
+	int error = read_inputs(client, what, LEVELWIND_ADDRESS_UPTIME_MS, 2, words);
+
+	if (error == 0) {
+		*restarted = (uint32_t)to_i32(words) < monotonic_ms() - since_ms;
+	}
+	return error;
+}
+
+/*
+ * The answer to a command was lost: ask whether it was taken. Requests are done in their order, so
+ * whoever answers this one has the command behind it.
+ */
+static int find_out_whether_taken(struct levelwind_client *client,
+				  const struct levelwind_given *given, int64_t since_ms)
+{
+	const char *what = command_name(given->command);
+	const uint16_t before = (uint16_t)(given->sequence - 1);
+	const int64_t deadline_ms = monotonic_ms() + DEAD_LINE_MS;
+	struct levelwind_command_result now;
+	bool restarted = false;
+	int error;
+
+	do {
+		error = read_result(client, what, &now);
+		/* A restart sets the sequence to 0: then 0 again proves nothing. */
+		if (error == 0 && before == 0 && now.sequence == 0) {
+			error = read_restarted(client, what, since_ms, &restarted);
+		}
 		if (error != 0) {
-			return error;
+			pause_ms(COMMAND_POLL_MS);
 		}
-		if (result->sequence != sequence &&
-		    result->result != LEVELWIND_RESULT_IN_PROGRESS) {
-			break;
-		}
-		if (monotonic_ms() >= deadline_ms) {
-			return fail(client, ETIMEDOUT,
-				    "%s has not ended after %d ms: wait longer, or give stop", what,
-				    timeout_ms);
-		}
-		(void)nanosleep(&pause, NULL);
+	} while (error != 0 && monotonic_ms() < deadline_ms);
+	if (error != 0) {
+		return but(client, ECONNABORTED,
+			   ". The command was sent and may have been done: look at the status");
+	}
+	if (now.sequence == given->sequence && now.code == (uint16_t)given->command) {
+		return 0;
+	}
+	if (now.sequence == before && !restarted) {
+		return fail(client, ETIMEDOUT,
+			    "%s was not taken: it did not arrive. Nothing changed, give it again",
+			    what);
+	}
+	return fail(client, ECONNABORTED,
+		    "%s may have been done: its answer was lost, and then the controller restarted "
+		    "or another command was given. Look at the status",
+		    what);
+}
+
+int levelwind_start_command(struct levelwind_client *client, enum levelwind_command command,
+			    struct levelwind_given *given)
+{
+	const char *what = command_name(command);
+	struct levelwind_command_result before;
+	int64_t since_ms;
+	int error;
+
+	if (command == LEVELWIND_COMMAND_NONE) {
+		return fail(client, EINVAL,
+			    "command 0 does nothing: give an enum levelwind_command");
+	}
+	since_ms = monotonic_ms();
+	error = read_result(client, what, &before);
+	if (error != 0) {
+		return error;
+	}
+	given->command = command;
+	given->sequence = (uint16_t)(before.sequence + 1);
+	error = write_point(client, what, levelwind_find_point("command"), (int32_t)command);
+	if (error == -ECONNABORTED) {
+		return find_out_whether_taken(client, given, since_ms);
+	}
+	return error;
+}
+
+int levelwind_poll_command(struct levelwind_client *client, const struct levelwind_given *given,
+			   struct levelwind_command_result *result)
+{
+	const char *what = command_name(given->command);
+	struct levelwind_command_result own;
+	int error;
+
+	if (result == NULL) {
+		result = &own;
+	}
+	error = read_result(client, what, result);
+	if (error != 0) {
+		return error;
+	}
+	if (result->sequence != given->sequence || result->code != (uint16_t)given->command) {
+		return fail(client, ECONNRESET,
+			    "%s: how it ended cannot be known, the controller restarted or another "
+			    "command was given. Look at the status",
+			    what);
 	}
 	switch (result->result) {
 	case LEVELWIND_RESULT_DONE:
 		return 0;
+	case LEVELWIND_RESULT_IN_PROGRESS:
+		return fail(client, EINPROGRESS, "%s is still going on", what);
 	case LEVELWIND_RESULT_REFUSED:
 		return refused(client, EPERM, what, result->reason, true, result->address,
 			       result->value, result->limit);
@@ -485,39 +650,51 @@ static int await_result(struct levelwind_client *client, const char *what, uint1
 	}
 }
 
+/* Does this answer of levelwind_poll_command() tell how the command ended? */
+static bool has_ended(int error)
+{
+	return error == 0 || error == -EPERM || error == -ECANCELED || error == -ECONNRESET;
+}
+
 int levelwind_command(struct levelwind_client *client, enum levelwind_command command,
 		      int timeout_ms, struct levelwind_command_result *result)
 {
-	const struct levelwind_point *point = levelwind_find_point("command");
-	struct levelwind_command_result own;
-	const char *what = point->name;
-	uint16_t sequence;
+	struct levelwind_command_result now = {0};
+	struct levelwind_given given;
+	int64_t deadline_ms;
+	int64_t answered_ms;
 	int error;
 
-	if (result == NULL) {
-		result = &own;
+	if (result != NULL) {
+		*result = now;
 	}
-	for (size_t i = 0; i < point->value_count; i++) {
-		if (point->values[i].value == (int32_t)command) {
-			what = point->values[i].name;
+	error = levelwind_start_command(client, command, &given);
+	if (error != 0) {
+		return error;
+	}
+	answered_ms = monotonic_ms();
+	deadline_ms = answered_ms + timeout_ms;
+	for (;;) {
+		error = levelwind_poll_command(client, &given, &now);
+		if (result != NULL) {
+			*result = now;
 		}
+		if (has_ended(error)) {
+			return error;
+		}
+		if (error == -EINPROGRESS) {
+			answered_ms = monotonic_ms();
+		} else if (monotonic_ms() - answered_ms >= DEAD_LINE_MS) {
+			return but(client, ECONNRESET,
+				   ". The command was taken, and may be going on");
+		}
+		if (error == -EINPROGRESS && answered_ms >= deadline_ms) {
+			return fail(client, EINPROGRESS,
+				    "%s has not ended after %d ms: wait longer, or give stop",
+				    command_name(command), timeout_ms);
+		}
+		pause_ms(COMMAND_POLL_MS);
 	}
-	memset(result, 0, sizeof(*result));
-	if (command == LEVELWIND_COMMAND_NONE) {
-		return fail(client, EINVAL,
-			    "command 0 does nothing: give an enum levelwind_command");
-	}
-	error = read_result(client, what, result);
-	if (error != 0) {
-		return error;
-	}
-	sequence = result->sequence;
-	memset(result, 0, sizeof(*result));
-	error = write_point(client, what, point, (int32_t)command);
-	if (error != 0) {
-		return error;
-	}
-	return await_result(client, what, sequence, timeout_ms, result);
 }
 
 const char *levelwind_last_error_text(const struct levelwind_client *client)

@@ -1,7 +1,9 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Driver class: the contacts of a limit switch. Debouncing is the controller's (lw/limit_switch.h);
- * the driver tells every transition at once, so that the position of the first can be kept.
+ * Driver class: the contacts of a limit switch. Debouncing is the controller's
+ * (lw/control/limit_switch.h); the driver tells every transition at once, so that the position of
+ * the first can be kept.
  */
 #ifndef LW_DRIVERS_LIMIT_SWITCH_H
 #define LW_DRIVERS_LIMIT_SWITCH_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The Modbus map: tables.
  * Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
@@ -7,12 +8,12 @@
 
 #include <stddef.h>
 
-static const int32_t allowed_command[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 30, 31, 32};
+static const int32_t allowed_command[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 30, 31, 32};
 const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT] = {
 	{
 		.address = 0, .count = 1, .offset = offsetof(struct lw_setpoints, command),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .min = 0,
-		.max = 32, .default_value = 0, .allowed = allowed_command, .allowed_count = 14,
+		.max = 32, .default_value = 0, .allowed = allowed_command, .allowed_count = 19,
 	},
 	{
 		.address = 1, .count = 1, .offset = offsetof(struct lw_setpoints, mode),
@@ -33,6 +34,16 @@ const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT] = {
 		.address = 4, .count = 1, .offset = offsetof(struct lw_setpoints, trim_minus_um),
 		.type = LW_TYPE_I16, .flags = LW_POINT_WRITABLE, .min = -20000, .max = 20000,
 		.default_value = 0,
+	},
+	{
+		.address = 5, .count = 1, .offset = offsetof(struct lw_setpoints, drum_running),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1,
+		.default_value = 0,
+	},
+	{
+		.address = 6, .count = 1, .offset = offsetof(struct lw_setpoints, set_rope_mm),
+		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE, .min = -1, .max = 10000000,
+		.default_value = -1,
 	},
 	{
 		.address = 10, .count = 1, .offset = offsetof(struct lw_setpoints, unlock),
@@ -190,6 +201,11 @@ const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT] = {
 		.max = 600000, .default_value = 180000,
 	},
 	{
+		.address = 139, .count = 1, .offset = offsetof(struct lw_params, switch_delay_us),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 20000, .default_value = 0,
+	},
+	{
 		.address = 140, .count = 1, .offset = offsetof(struct lw_params, index_switch),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
 		.max = 1, .default_value = 0,
@@ -281,6 +297,16 @@ const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT] = {
 		.default_value = 0,
 	},
 	{
+		.address = 168, .count = 1, .offset = offsetof(struct lw_params, breaker_millirev),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 2000, .default_value = 0,
+	},
+	{
+		.address = 169, .count = 1, .offset = offsetof(struct lw_params, breaker_cycles),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
+		.max = 200, .default_value = 0,
+	},
+	{
 		.address = 170, .count = 1, .offset = offsetof(struct lw_params, expert_mode),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_REINDEX, .min = 0,
 		.max = 1, .default_value = 0,
@@ -337,6 +363,62 @@ const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT] = {
 		.address = 187, .count = 1, .offset = offsetof(struct lw_params, line_confirm_s),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_SCOPE_LINE, .min = 2,
 		.max = 120, .default_value = 10,
+	},
+	{
+		.address = 190, .count = 1,
+		.offset = offsetof(struct lw_params, encoder_watch_transitions_per_s),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE, .min = 100, .max = 1000000,
+		.default_value = 2000,
+	},
+	{
+		.address = 192, .count = 1, .offset = offsetof(struct lw_params, encoder_watch_ms),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 50, .max = 60000,
+		.default_value = 500,
+	},
+	{
+		.address = 193, .count = 1,
+		.offset = offsetof(struct lw_params, encoder_illegal_permille), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 1, .max = 1000, .default_value = 10,
+	},
+	{
+		.address = 194, .count = 1, .offset = offsetof(struct lw_params, drum_watch_ms),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 60000,
+		.default_value = 0,
+	},
+	{
+		.address = 199, .count = 1,
+		.offset = offsetof(struct lw_params, standing_turns_permille), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 10000, .default_value = 250,
+	},
+	{
+		.address = 200, .count = 1, .offset = offsetof(struct lw_params, rope_diameter_um),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 50000,
+		.default_value = 0,
+	},
+	{
+		.address = 201, .count = 1,
+		.offset = offsetof(struct lw_params, drum_core_diameter_um), .type = LW_TYPE_U32,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 5000000, .default_value = 0,
+	},
+	{
+		.address = 203, .count = 1,
+		.offset = offsetof(struct lw_params, rope_packing_permille), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1000, .default_value = 0,
+	},
+	{
+		.address = 204, .count = 1, .offset = offsetof(struct lw_params, trim_step_um),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 1, .max = 5000,
+		.default_value = 500,
+	},
+	{
+		.address = 205, .count = 1, .offset = offsetof(struct lw_params, resume),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1,
+		.default_value = 0,
+	},
+	{
+		.address = 206, .count = 1,
+		.offset = offsetof(struct lw_params, reacquire_after_restart), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1, .default_value = 0,
 	},
 	{
 		.address = 600, .count = 1, .offset = offsetof(struct lw_params, motion_profile),
@@ -408,6 +490,14 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 	},
 	{.address = 6, .count = 1, .offset = offsetof(struct lw_status, host), .type = LW_TYPE_U16},
 	{
+		.address = 7, .count = 1, .offset = offsetof(struct lw_status, image_hash_high),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 9, .count = 1, .offset = offsetof(struct lw_status, image_hash_low),
+		.type = LW_TYPE_U32,
+	},
+	{
 		.address = 100, .count = 1, .offset = offsetof(struct lw_status, state),
 		.type = LW_TYPE_U16,
 	},
@@ -468,6 +558,34 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 	{
 		.address = 130, .count = 1, .offset = offsetof(struct lw_status, span_error_um),
 		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 132, .count = 1, .offset = offsetof(struct lw_status, flags_2),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 134, .count = 1, .offset = offsetof(struct lw_status, rope_on_drum_mm),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 136, .count = 1, .offset = offsetof(struct lw_status, rope_out_mm),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 138, .count = 1, .offset = offsetof(struct lw_status, rope_layer),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 139, .count = 1, .offset = offsetof(struct lw_status, rope_radius_um),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 141, .count = 1,
+		.offset = offsetof(struct lw_status, resume_position_um), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 143, .count = 1, .offset = offsetof(struct lw_status, resume_direction),
+		.type = LW_TYPE_I16,
 	},
 	{
 		.address = 200, .count = 1, .offset = offsetof(struct lw_status, los1_plus_count),
@@ -636,6 +754,77 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 		.type = LW_TYPE_U16,
 	},
 	{
+		.address = 360, .count = 1,
+		.offset = offsetof(struct lw_status, encoder_fault_kind), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 361, .count = 1,
+		.offset = offsetof(struct lw_status, encoder_fault_count), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 362, .count = 1,
+		.offset = offsetof(struct lw_status, encoder_fault_position_um),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 364, .count = 1,
+		.offset = offsetof(struct lw_status, encoder_fault_time_ms), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 366, .count = 1, .offset = offsetof(struct lw_status, encoder_doubts),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 367, .count = 1,
+		.offset = offsetof(struct lw_status, encoder_misfit_edges), .type = LW_TYPE_I32,
+	},
+	{
+		.address = 369, .count = 1,
+		.offset = offsetof(struct lw_status, memory_corrections), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 380, .count = 1, .offset = offsetof(struct lw_status, line_babbles),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 382, .count = 1, .offset = offsetof(struct lw_status, line_echoes),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 384, .count = 1, .offset = offsetof(struct lw_status, late_requests),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 386, .count = 1, .offset = offsetof(struct lw_status, foreign_answers),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 388, .count = 1, .offset = offsetof(struct lw_status, events_skipped),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 390, .count = 1,
+		.offset = offsetof(struct lw_status, rope_standing_millirev), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 392, .count = 1,
+		.offset = offsetof(struct lw_status, rope_standing_position_um),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 394, .count = 1,
+		.offset = offsetof(struct lw_status, rope_standing_time_ms), .type = LW_TYPE_U32,
+	},
+	{
+		.address = 396, .count = 1,
+		.offset = offsetof(struct lw_status, rope_standing_place_known),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 397, .count = 1,
+		.offset = offsetof(struct lw_status, look_before_power_up), .type = LW_TYPE_U16,
+	},
+	{
 		.address = 400, .count = 1, .offset = offsetof(struct lw_status, command_sequence),
 		.type = LW_TYPE_U16,
 	},
@@ -723,6 +912,18 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 		.type = LW_TYPE_U32,
 	},
 	{
+		.address = 520, .count = 1, .offset = offsetof(struct lw_status, breaker_edges),
+		.type = LW_TYPE_U32,
+	},
+	{
+		.address = 522, .count = 1,
+		.offset = offsetof(struct lw_status, breaker_cycle_plus), .type = LW_TYPE_U16,
+	},
+	{
+		.address = 523, .count = 1,
+		.offset = offsetof(struct lw_status, breaker_cycle_minus), .type = LW_TYPE_U16,
+	},
+	{
 		.address = 600, .count = 1, .offset = offsetof(struct lw_status, cam_bank_0_state),
 		.type = LW_TYPE_U16,
 	},
@@ -802,6 +1003,14 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 		.address = 628, .count = 1, .offset = offsetof(struct lw_status, slot_5),
 		.type = LW_TYPE_U16,
 	},
+	{
+		.address = 629, .count = 1, .offset = offsetof(struct lw_status, slot_6),
+		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 630, .count = 1, .offset = offsetof(struct lw_status, slot_7),
+		.type = LW_TYPE_U16,
+	},
 };
 
 const struct lw_point lw_map_cam_upload[LW_MAP_CAM_UPLOAD_COUNT] = {
@@ -859,7 +1068,7 @@ const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT] = {
 	{
 		.address = 61442, .count = 1, .offset = offsetof(struct lw_bench, bench_command),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .min = 0,
-		.max = 9, .default_value = 0,
+		.max = 10, .default_value = 0,
 	},
 	{
 		.address = 61443, .count = 1,
@@ -947,6 +1156,16 @@ const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT] = {
 		.type = LW_TYPE_U16,
 	},
 	{
+		.address = 61465, .count = 1, .offset = offsetof(struct lw_bench, bench_trim_early),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1,
+		.default_value = 0,
+	},
+	{
+		.address = 61466, .count = 1, .offset = offsetof(struct lw_bench, bench_trim_late),
+		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1,
+		.default_value = 0,
+	},
+	{
 		.address = 61469, .count = 1, .offset = offsetof(struct lw_bench, bench_result),
 		.type = LW_TYPE_U16,
 	},
@@ -992,6 +1211,46 @@ const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT] = {
 		.type = LW_TYPE_I32, .flags = LW_POINT_WRITABLE, .min = -3000000, .max = 100000000,
 		.default_value = 0,
 	},
+	{
+		.address = 61620, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_encoder_a_fault), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 3, .default_value = 0,
+	},
+	{
+		.address = 61621, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_encoder_b_fault), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 3, .default_value = 0,
+	},
+	{
+		.address = 61622, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_index_pulses), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1, .default_value = 1,
+	},
+	{
+		.address = 61623, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_rope_layer_um), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 50000, .default_value = 0,
+	},
+	{
+		.address = 61624, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_rope_layer_milliturns),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE, .min = 1, .max = 100000000,
+		.default_value = 33000,
+	},
+	{
+		.address = 61626, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_rope_core_um), .type = LW_TYPE_U32,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 5000000, .default_value = 0,
+	},
+	{
+		.address = 61628, .count = 1, .offset = offsetof(struct lw_bench, bench_rope_mm),
+		.type = LW_TYPE_I32,
+	},
+	{
+		.address = 61630, .count = 1,
+		.offset = offsetof(struct lw_bench, bench_switch_late_us), .type = LW_TYPE_U16,
+		.flags = LW_POINT_WRITABLE, .min = 0, .max = 20000, .default_value = 500,
+	},
 };
 
 const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT] = {
@@ -1026,6 +1285,26 @@ const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT] = {
 	{
 		.address = 7, .count = 1, .offset = 7, .type = LW_TYPE_BIT,
 		.flags = LW_POINT_WRITABLE, .max = 1,
+	},
+	{
+		.address = 8, .count = 1, .offset = 8, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 9, .count = 1, .offset = 9, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 10, .count = 1, .offset = 10, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 11, .count = 1, .offset = 11, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
+	},
+	{
+		.address = 12, .count = 1, .offset = 12, .type = LW_TYPE_BIT,
+		.flags = LW_POINT_WRITABLE | LW_POINT_COMMAND, .max = 1,
 	},
 };
 
@@ -1062,6 +1341,18 @@ const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT] = {
 	{.address = 29, .count = 1, .offset = 29, .type = LW_TYPE_BIT},
 	{.address = 30, .count = 1, .offset = 30, .type = LW_TYPE_BIT},
 	{.address = 31, .count = 1, .offset = 31, .type = LW_TYPE_BIT},
+	{.address = 32, .count = 1, .offset = 0, .type = LW_TYPE_BIT},
+	{.address = 33, .count = 1, .offset = 1, .type = LW_TYPE_BIT},
+	{.address = 34, .count = 1, .offset = 2, .type = LW_TYPE_BIT},
+	{.address = 35, .count = 1, .offset = 3, .type = LW_TYPE_BIT},
+	{.address = 36, .count = 1, .offset = 4, .type = LW_TYPE_BIT},
+	{.address = 37, .count = 1, .offset = 5, .type = LW_TYPE_BIT},
+	{.address = 38, .count = 1, .offset = 6, .type = LW_TYPE_BIT},
+	{.address = 39, .count = 1, .offset = 7, .type = LW_TYPE_BIT},
+	{.address = 40, .count = 1, .offset = 8, .type = LW_TYPE_BIT},
+	{.address = 41, .count = 1, .offset = 9, .type = LW_TYPE_BIT},
+	{.address = 42, .count = 1, .offset = 10, .type = LW_TYPE_BIT},
+	{.address = 43, .count = 1, .offset = 11, .type = LW_TYPE_BIT},
 };
 
 const uint8_t lw_map_coil_command[LW_MAP_COILS_COUNT] = {
@@ -1073,6 +1364,11 @@ const uint8_t lw_map_coil_command[LW_MAP_COILS_COUNT] = {
 	[LW_ADDRESS_SAVE] = LW_COMMAND_SAVE,
 	[LW_ADDRESS_JOG_PLUS] = 0,
 	[LW_ADDRESS_JOG_MINUS] = 0,
+	[LW_ADDRESS_ACKNOWLEDGE_ROPE] = LW_COMMAND_ACKNOWLEDGE_ROPE,
+	[LW_ADDRESS_SET_ROPE] = LW_COMMAND_SET_ROPE,
+	[LW_ADDRESS_TRIM_EARLY] = LW_COMMAND_TRIM_EARLY,
+	[LW_ADDRESS_TRIM_LATE] = LW_COMMAND_TRIM_LATE,
+	[LW_ADDRESS_REACQUIRE] = LW_COMMAND_REACQUIRE,
 };
 
 const int8_t lw_map_coil_jog[LW_MAP_COILS_COUNT] = {
@@ -1107,6 +1403,7 @@ const struct lw_params lw_params_default = {
 	.switch_transit_ms = 20,
 	.switch_debounce_ms = 5,
 	.travel_um = 180000,
+	.switch_delay_us = 0,
 	.index_switch = 0,
 	.index_rate_edges_per_s = 10000,
 	.park_at = 0,
@@ -1124,6 +1421,8 @@ const struct lw_params lw_params_default = {
 	.master_timeout_ms = 0,
 	.dwell_plus_millirev = 0,
 	.dwell_minus_millirev = 0,
+	.breaker_millirev = 0,
+	.breaker_cycles = 0,
 	.expert_mode = 0,
 	.raw_ka = 23,
 	.raw_nr = 1187,
@@ -1135,6 +1434,17 @@ const struct lw_params lw_params_default = {
 	.lock_code = 0,
 	.lock_timeout_s = 300,
 	.line_confirm_s = 10,
+	.encoder_watch_transitions_per_s = 2000,
+	.encoder_watch_ms = 500,
+	.encoder_illegal_permille = 10,
+	.drum_watch_ms = 0,
+	.standing_turns_permille = 250,
+	.rope_diameter_um = 0,
+	.drum_core_diameter_um = 0,
+	.rope_packing_permille = 0,
+	.trim_step_um = 500,
+	.resume = 0,
+	.reacquire_after_restart = 0,
 	.motion_profile = 0,
 	.cam_start = 0,
 	.cam_master_edges = 1,

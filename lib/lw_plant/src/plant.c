@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief Configuration, event loop and ground truth.
@@ -104,51 +105,9 @@ int lw_plant_init(struct lw_plant *plant, const struct lw_plant_config *config, 
 	return 0;
 }
 
-/* xorshift64*, after Vigna, "An experimental exploration of Marsaglia's xorshift generators". */
-uint32_t lw_plant_random(struct lw_plant *plant, uint32_t range)
+static uint64_t next_rare_ns(const struct lw_plant *plant)
 {
-	plant->random ^= plant->random >> 12;
-	plant->random ^= plant->random << 25;
-	plant->random ^= plant->random >> 27;
-
-	uint32_t high = (uint32_t)((plant->random * 0x2545f4914f6cdd1du) >> 32);
-
-	return (uint32_t)(((uint64_t)high * range) >> 32);
-}
-
-static void plan_trigger(struct lw_plant *plant, double begin_usteps, double remaining_s)
-{
-	struct lw_plant_trigger *trigger = &plant->trigger;
-	double speed = plant->carriage.path_usteps_per_s;
-	/* The next substep begins where this one ends, so each position lies in exactly one. */
-	double end_usteps = begin_usteps + speed * remaining_s;
-	double at_usteps = trigger->position_usteps;
-	bool passed = speed > 0.0 ? begin_usteps <= at_usteps && at_usteps < end_usteps
-				  : begin_usteps >= at_usteps && at_usteps > end_usteps;
-
-	trigger->fire_ns = LW_PLANT_NEVER_NS;
-	if (trigger->armed && passed && trigger->direction * speed >= 0.0) {
-		double wait_s = (at_usteps - begin_usteps) / speed;
-
-		trigger->fire_ns = plant->now_ns + (uint64_t)(wait_s / S_PER_NS);
-	}
-}
-
-void lw_plant_plan_contacts(struct lw_plant *plant)
-{
-	double position_usteps = lw_plant_carriage_usteps(plant);
-	double remaining_s = (double)(plant->substep_ns - plant->now_ns) * S_PER_NS;
-
-	for (int side = 0; side < LW_PLANT_SIDES; side++) {
-		lw_plant_switch_plan(&plant->limit[side], plant, position_usteps, remaining_s);
-		lw_plant_switch_plan(&plant->overtravel[side], plant, position_usteps, remaining_s);
-	}
-	plan_trigger(plant, position_usteps, remaining_s);
-}
-
-static uint64_t next_slow_ns(const struct lw_plant *plant)
-{
-	uint64_t next_ns = earlier_ns(plant->substep_ns, plant->drum.dither_ns);
+	uint64_t next_ns = earlier_ns(plant->drum.dither_ns, plant->drum.flicker_ns);
 
 	next_ns = earlier_ns(next_ns, plant->trigger.fire_ns);
 	for (int side = 0; side < LW_PLANT_SIDES; side++) {
@@ -156,12 +115,22 @@ static uint64_t next_slow_ns(const struct lw_plant *plant)
 		next_ns = earlier_ns(next_ns, plant->limit[side].contact_ns);
 		next_ns = earlier_ns(next_ns, plant->overtravel[side].pole_ns);
 		next_ns = earlier_ns(next_ns, plant->overtravel[side].contact_ns);
+		if (plant->overtravel[side].blip_end_ns > plant->now_ns) {
+			next_ns = earlier_ns(next_ns, plant->overtravel[side].blip_end_ns);
+		}
 	}
 	return next_ns;
 }
 
-/** Everything but the encoder's transitions: whatever is due now. */
-static uint32_t run_slow(struct lw_plant *plant)
+static void substep(struct lw_plant *plant)
+{
+	plant->substep_ns += LW_PLANT_SUBSTEP_NS;
+	lw_plant_drum_substep(&plant->drum, plant->now_ns);
+	lw_plant_carriage_substep(&plant->carriage, plant->now_ns);
+}
+
+/** Whatever is due now. */
+static uint32_t run_rare(struct lw_plant *plant)
 {
 	uint32_t changed = 0;
 
@@ -176,10 +145,9 @@ static uint32_t run_slow(struct lw_plant *plant)
 	if (plant->drum.dither_ns <= plant->now_ns) {
 		changed |= lw_plant_drum_dither(plant);
 	}
+	changed |= lw_plant_drum_wires(plant);
 	if (plant->substep_ns <= plant->now_ns) {
-		plant->substep_ns += LW_PLANT_SUBSTEP_NS;
-		lw_plant_drum_substep(&plant->drum, plant->now_ns);
-		lw_plant_carriage_substep(&plant->carriage, plant->now_ns);
+		substep(plant);
 		lw_plant_plan_contacts(plant);
 	}
 	changed |= lw_plant_switch_pins(plant);
@@ -187,7 +155,33 @@ static uint32_t run_slow(struct lw_plant *plant)
 		plant->pins.stepper_alarm = plant->carriage.alarm;
 		changed |= LW_PLANT_STEPPER_ALARM;
 	}
-	plant->slow_ns = next_slow_ns(plant);
+	for (int later = 0; later < 2; later++) {
+		if (plant->pins.trim_buttons[later] != plant->trim_pressed[later]) {
+			plant->pins.trim_buttons[later] = plant->trim_pressed[later];
+			changed |= LW_PLANT_TRIM_BUTTONS;
+		}
+	}
+	lw_plant_drum_note_plain(&plant->drum);
+	lw_plant_note_clear(plant);
+	plant->rare_ns = next_rare_ns(plant);
+	return changed;
+}
+
+/** Everything but the encoder's transitions. */
+static uint32_t run_slow(struct lw_plant *plant)
+{
+	uint32_t changed = 0;
+
+	if (plant->rare_ns <= plant->now_ns) {
+		changed = run_rare(plant);
+	} else {
+		substep(plant);
+		if (!lw_plant_is_clear(plant)) {
+			lw_plant_plan_contacts(plant);
+			plant->rare_ns = next_rare_ns(plant);
+		}
+	}
+	plant->slow_ns = earlier_ns(plant->substep_ns, plant->rare_ns);
 	return changed;
 }
 
@@ -224,5 +218,6 @@ void lw_plant_read_truth(const struct lw_plant *plant, struct lw_plant_truth *tr
 		.slipped_usteps = pole * (int64_t)carriage->period_usteps,
 		.pole_slips = carriage->pole_slips,
 		.in_sync = pole == 0,
+		.rope_um = lw_plant_rope_um(plant),
 	};
 }

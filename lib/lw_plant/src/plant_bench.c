@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 #include "lw/plant_bench.h"
 
 #include <errno.h>
@@ -17,6 +18,7 @@ static void refresh(struct lw_plant_bench *bench)
 	registers->bench_drum_actual_millirpm = (int32_t)truth.drum_milli_rpm;
 	registers->bench_profile_points = (int32_t)bench->profile_count;
 	registers->bench_profile_running = lw_plant_drum_playing(bench->plant);
+	registers->bench_rope_mm = (int32_t)(truth.rope_um / 1000.0);
 	registers->bench_time_ms = (uint32_t)(truth.time_ns / 1000000);
 	if (!lw_plant_armed(bench->plant)) {
 		registers->bench_trigger_fault = LW_TRIGGER_FAULT_NONE;
@@ -84,7 +86,9 @@ static int run_command(struct lw_plant_bench *bench, enum lw_bench_command comma
 	case LW_BENCH_COMMAND_PROFILE_START:
 		return lw_plant_drum_play(plant, bench->profile, bench->profile_count);
 	case LW_BENCH_COMMAND_POWER_CUT:
+	case LW_BENCH_COMMAND_RESTART:
 		bench->power_cut = true;
+		bench->memory_kept = command == LW_BENCH_COMMAND_RESTART;
 		return 0;
 	case LW_BENCH_COMMAND_SLIP:
 		return lw_plant_inject(plant, LW_PLANT_FAULT_SLIP, argument);
@@ -98,6 +102,18 @@ static int run_command(struct lw_plant_bench *bench, enum lw_bench_command comma
 		return lw_plant_inject(plant, LW_PLANT_FAULT_PLACE_CARRIAGE, argument);
 	}
 	return -EINVAL;
+}
+
+static int set_rope(struct lw_plant_bench *bench)
+{
+	const struct lw_bench *registers = &bench->registers;
+	const struct lw_plant_rope rope = {
+		.layer_um = registers->bench_rope_layer_um,
+		.turns_per_layer = registers->bench_rope_layer_milliturns / 1000.0,
+		.core_um = registers->bench_rope_core_um,
+	};
+
+	return lw_plant_set_rope(bench->plant, &rope);
 }
 
 static int arm(struct lw_plant_bench *bench, enum lw_trigger_fault fault)
@@ -164,6 +180,29 @@ static void store(void *context, const struct lw_point *point, uint16_t element,
 	case LW_ADDRESS_BENCH_STEPPER_ALARM:
 		ret = lw_plant_inject(plant, LW_PLANT_FAULT_STEPPER_ALARM, value);
 		break;
+	case LW_ADDRESS_BENCH_ENCODER_A_FAULT:
+		ret = lw_plant_inject(plant, LW_PLANT_FAULT_ENCODER_A, value);
+		break;
+	case LW_ADDRESS_BENCH_ENCODER_B_FAULT:
+		ret = lw_plant_inject(plant, LW_PLANT_FAULT_ENCODER_B, value);
+		break;
+	case LW_ADDRESS_BENCH_INDEX_PULSES:
+		ret = lw_plant_inject(plant, LW_PLANT_FAULT_ENCODER_INDEX, value);
+		break;
+	case LW_ADDRESS_BENCH_TRIM_EARLY:
+		ret = lw_plant_inject(plant, LW_PLANT_FAULT_TRIM_EARLY, value);
+		break;
+	case LW_ADDRESS_BENCH_TRIM_LATE:
+		ret = lw_plant_inject(plant, LW_PLANT_FAULT_TRIM_LATE, value);
+		break;
+	case LW_ADDRESS_BENCH_SWITCH_LATE_US:
+		ret = lw_plant_inject(plant, LW_PLANT_FAULT_SWITCH_LATE, value);
+		break;
+	case LW_ADDRESS_BENCH_ROPE_LAYER_UM:
+	case LW_ADDRESS_BENCH_ROPE_LAYER_MILLITURNS:
+	case LW_ADDRESS_BENCH_ROPE_CORE_UM:
+		ret = set_rope(bench);
+		break;
 	case LW_ADDRESS_BENCH_HANG:
 		ret = bench->threads ? 0 : -ENOTSUP;
 		bench->hang = ret == 0 ? (enum lw_bench_thread)value : LW_BENCH_THREAD_NONE;
@@ -195,6 +234,7 @@ void lw_plant_bench_init(struct lw_plant_bench *bench, struct lw_plant *plant)
 	/* The profile is large, and nobody reads it beyond its count. */
 	bench->plant = plant;
 	bench->power_cut = false;
+	bench->memory_kept = false;
 	bench->threads = false;
 	bench->hang = LW_BENCH_THREAD_NONE;
 	bench->profile_count = 0;
@@ -207,6 +247,7 @@ void lw_plant_bench_init(struct lw_plant_bench *bench, struct lw_plant *plant)
 			       sizeof(int32_t));
 		}
 	}
+	(void)set_rope(bench);
 	/* The plant's own default is another one. */
 	(void)lw_plant_drum_acceleration(
 		plant, bench->registers.bench_drum_acceleration_millirpm_per_s / 1000.0);

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief Motor, screw and carriage.
@@ -133,12 +134,6 @@ void lw_plant_carriage_halt(struct lw_plant *plant, double position_usteps)
 	plant->carriage.position_usteps = position_usteps;
 	plant->carriage.speed_usteps_per_s = 0.0;
 	plant->carriage.path_usteps_per_s = 0.0;
-}
-
-void lw_plant_step(struct lw_plant *plant, int direction)
-{
-	plant->carriage.commanded_usteps += plant->carriage.reversed ? -direction : direction;
-	plant->carriage.step_pulses++;
 }
 
 void lw_plant_enable(struct lw_plant *plant, bool enabled)

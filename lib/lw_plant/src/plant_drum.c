@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief The drum and its encoder.
@@ -15,6 +16,9 @@
 #define TRANSITIONS_PER_ILLEGAL_CHANGE 2
 #define MILLI_RPM_PER_RPM              1000.0
 #define MILLI_RPM_S_PER_REV            60000.0
+#define FLICKER_MIN_NS                 1000000u
+#define FLICKER_RANGE_NS               2000000u
+#define PI                             3.14159265358979323846
 
 void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config *config)
 {
@@ -25,6 +29,7 @@ void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config
 	*drum = (struct lw_plant_drum){
 		.transition_ns = LW_PLANT_NEVER_NS,
 		.dither_ns = LW_PLANT_NEVER_NS,
+		.flicker_ns = LW_PLANT_NEVER_NS,
 		.transitions_per_milli_rpm_s = transitions_per_rev / MILLI_RPM_S_PER_REV,
 		.acceleration_milli_rpm_per_s =
 			config->drum_acceleration_rpm_per_s * MILLI_RPM_PER_RPM,
@@ -113,13 +118,26 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 	plan_transition(drum, begin_ns);
 }
 
+/** What arrives at the pin of a channel. */
+static bool through_wire(const struct lw_plant_drum *drum, int channel, bool level)
+{
+	switch (drum->channel_fault[channel]) {
+	case LW_PLANT_CHANNEL_STUCK_LOW:
+		return false;
+	case LW_PLANT_CHANNEL_STUCK_HIGH:
+		return true;
+	default:
+		return level && !drum->channel_open[channel];
+	}
+}
+
 /** A leads B for rising positions: 00, 10, 11, 01. */
 static uint32_t show(struct lw_plant *plant, int64_t transitions)
 {
 	uint32_t shown =
 		(uint32_t)(transitions + plant->drum.extra_transitions + plant->drum.dithered);
-	bool a = ((shown ^ (shown >> 1)) & 1u) != 0;
-	bool b = ((shown >> 1) & 1u) != 0;
+	bool a = through_wire(&plant->drum, 0, ((shown ^ (shown >> 1)) & 1u) != 0);
+	bool b = through_wire(&plant->drum, 1, ((shown >> 1) & 1u) != 0);
 	uint32_t changed = 0;
 
 	if (a != plant->pins.encoder_a) {
@@ -155,11 +173,19 @@ static int64_t shown_transitions(struct lw_plant_drum *drum)
 	return drum->held_transitions;
 }
 
-/** The index is the encoder's truth: no fault hides it. */
 static uint32_t show_index(struct lw_plant *plant)
 {
+	const bool level = plant->drum.past_index == 0 && !plant->drum.index_open;
+	const bool changed = level != plant->pins.encoder_index;
+
+	plant->pins.encoder_index = level;
+	return changed ? LW_PLANT_ENCODER_INDEX : 0;
+}
+
+/** The index is the encoder's truth: no fault of a channel hides it. */
+static uint32_t pass_index(struct lw_plant *plant)
+{
 	struct lw_plant_drum *drum = &plant->drum;
-	const bool before = plant->pins.encoder_index;
 
 	drum->past_index += drum->direction;
 	if (drum->past_index == drum->transitions_per_encoder_rev) {
@@ -167,8 +193,7 @@ static uint32_t show_index(struct lw_plant *plant)
 	} else if (drum->past_index < 0) {
 		drum->past_index = drum->transitions_per_encoder_rev - 1;
 	}
-	plant->pins.encoder_index = drum->past_index == 0;
-	return plant->pins.encoder_index != before ? LW_PLANT_ENCODER_INDEX : 0;
+	return show_index(plant);
 }
 
 uint32_t lw_plant_drum_transition(struct lw_plant *plant)
@@ -179,7 +204,7 @@ uint32_t lw_plant_drum_transition(struct lw_plant *plant)
 	drum->fraction -= drum->direction;
 	drum->offset_ns += drum->period_ns;
 	plan_transition(drum, substep_begin_ns(plant));
-	return show(plant, shown_transitions(drum)) | show_index(plant);
+	return show(plant, shown_transitions(drum)) | pass_index(plant);
 }
 
 uint32_t lw_plant_drum_dither(struct lw_plant *plant)
@@ -198,6 +223,79 @@ uint32_t lw_plant_drum_dither(struct lw_plant *plant)
 	}
 	drum->dither_ns = plant->now_ns + DITHER_INTERVAL_NS;
 	return show(plant, shown_transitions(drum));
+}
+
+void lw_plant_drum_channel(struct lw_plant_drum *drum, int channel, uint8_t fault, uint64_t now_ns)
+{
+	drum->channel_fault[channel] = fault;
+	drum->channel_open[channel] = false;
+	drum->flicker_ns = drum->channel_fault[0] == LW_PLANT_CHANNEL_FLICKER ||
+					   drum->channel_fault[1] == LW_PLANT_CHANNEL_FLICKER
+				   ? now_ns
+				   : LW_PLANT_NEVER_NS;
+	drum->wires_changed = true;
+}
+
+uint32_t lw_plant_drum_wires(struct lw_plant *plant)
+{
+	struct lw_plant_drum *drum = &plant->drum;
+
+	if (drum->flicker_ns <= plant->now_ns) {
+		drum->flicker_ns =
+			plant->now_ns + FLICKER_MIN_NS + lw_plant_random(plant, FLICKER_RANGE_NS);
+		for (int channel = 0; channel < 2; channel++) {
+			drum->channel_open[channel] =
+				drum->channel_fault[channel] == LW_PLANT_CHANNEL_FLICKER &&
+				!drum->channel_open[channel];
+		}
+	} else if (!drum->wires_changed) {
+		return 0;
+	}
+	drum->wires_changed = false;
+	return show(plant, drum->lose_pulses == 0 && drum->illegal_changes == 0
+				   ? drum->transitions
+				   : drum->held_transitions) |
+	       show_index(plant);
+}
+
+void lw_plant_drum_note_plain(struct lw_plant_drum *drum)
+{
+	drum->plain = drum->lose_pulses == 0 && drum->illegal_changes == 0 &&
+		      drum->channel_fault[0] == LW_PLANT_CHANNEL_OK &&
+		      drum->channel_fault[1] == LW_PLANT_CHANNEL_OK;
+	drum->shown_ahead = drum->extra_transitions + drum->dithered;
+}
+
+int lw_plant_set_rope(struct lw_plant *plant, const struct lw_plant_rope *rope)
+{
+	if (!isfinite(rope->layer_um) || rope->layer_um < 0.0 || !isfinite(rope->turns_per_layer) ||
+	    rope->turns_per_layer <= 0.0 || !isfinite(rope->core_um) || rope->core_um < 0.0) {
+		return -ERANGE;
+	}
+	plant->rope = *rope;
+	return 0;
+}
+
+double lw_plant_rope_um(const struct lw_plant *plant)
+{
+	const struct lw_plant_rope *rope = &plant->rope;
+	double turns_left = (double)plant->drum.transitions /
+			    (plant->drum.transitions_per_milli_rpm_s * MILLI_RPM_S_PER_REV);
+	/* The rope's middle lies half a layer above what is below it. */
+	double diameter_um = rope->core_um + rope->layer_um;
+	double um = 0.0;
+
+	if (turns_left < 0.0 || rope->layer_um == 0.0) {
+		return PI * rope->core_um * turns_left;
+	}
+	while (turns_left > 0.0) {
+		double turns = fmin(turns_left, rope->turns_per_layer);
+
+		um += PI * diameter_um * turns;
+		turns_left -= turns;
+		diameter_um += 2.0 * rope->layer_um;
+	}
+	return um;
 }
 
 static bool milli_rpm_in_range(int32_t drum_milli_rpm)

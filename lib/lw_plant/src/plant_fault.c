@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief Faults: checked, then injected at once or when the carriage passes a position.
@@ -8,6 +9,7 @@
 #include "plant_internal.h"
 
 #define BOUNCE_MAX_US 1000000
+#define LATE_MAX_US   1000000
 #define PULSES_MAX    100000000 /* four transitions each still fit a counter */
 #define UM_PER_MM     1000.0
 
@@ -25,6 +27,8 @@ static int check(const struct lw_plant *plant, enum lw_plant_fault fault, int32_
 	case LW_PLANT_FAULT_SLIP:
 		return fabs((double)argument) >= plant->carriage.period_usteps / 2.0 ? 0 : -ERANGE;
 	case LW_PLANT_FAULT_BOUNCE:
+	case LW_PLANT_FAULT_BLIP_PLUS:
+	case LW_PLANT_FAULT_BLIP_MINUS:
 		return argument >= 0 && argument <= BOUNCE_MAX_US ? 0 : -ERANGE;
 	case LW_PLANT_FAULT_LIMIT_PLUS:
 	case LW_PLANT_FAULT_LIMIT_MINUS:
@@ -39,9 +43,17 @@ static int check(const struct lw_plant *plant, enum lw_plant_fault fault, int32_
 		return argument >= 0 && argument <= PULSES_MAX ? 0 : -ERANGE;
 	case LW_PLANT_FAULT_PLACE_CARRIAGE:
 		return within_flanges(plant, argument) ? 0 : -ERANGE;
+	case LW_PLANT_FAULT_ENCODER_A:
+	case LW_PLANT_FAULT_ENCODER_B:
+		return argument >= 0 && argument < LW_PLANT_CHANNEL_FAULT_COUNT ? 0 : -EINVAL;
 	case LW_PLANT_FAULT_CARRIAGE_REVERSED:
 	case LW_PLANT_FAULT_STEPPER_ALARM:
+	case LW_PLANT_FAULT_ENCODER_INDEX:
+	case LW_PLANT_FAULT_TRIM_EARLY:
+	case LW_PLANT_FAULT_TRIM_LATE:
 		return argument == 0 || argument == 1 ? 0 : -EINVAL;
+	case LW_PLANT_FAULT_SWITCH_LATE:
+		return argument >= 0 && argument <= LATE_MAX_US ? 0 : -ERANGE;
 	case LW_PLANT_FAULT_COUNT:
 		break;
 	}
@@ -101,6 +113,8 @@ static void extra_pulses(struct lw_plant *plant, int32_t count)
 static void run_now(struct lw_plant *plant)
 {
 	lw_plant_plan_contacts(plant);
+	plant->drum.plain = false;
+	plant->rare_ns = plant->now_ns;
 	plant->slow_ns = plant->now_ns;
 	plant->event_ns = plant->now_ns;
 }
@@ -159,6 +173,28 @@ int lw_plant_inject(struct lw_plant *plant, enum lw_plant_fault fault, int32_t a
 		break;
 	case LW_PLANT_FAULT_STEPPER_ALARM:
 		plant->carriage.alarm = argument != 0;
+		break;
+	case LW_PLANT_FAULT_ENCODER_A:
+	case LW_PLANT_FAULT_ENCODER_B:
+		lw_plant_drum_channel(&plant->drum, fault == LW_PLANT_FAULT_ENCODER_B,
+				      (uint8_t)argument, plant->now_ns);
+		break;
+	case LW_PLANT_FAULT_BLIP_PLUS:
+	case LW_PLANT_FAULT_BLIP_MINUS:
+		plant->overtravel[fault == LW_PLANT_FAULT_BLIP_MINUS].blip_end_ns =
+			plant->now_ns + (uint64_t)argument * NS_PER_US;
+		break;
+	case LW_PLANT_FAULT_ENCODER_INDEX:
+		plant->drum.index_open = argument == 0;
+		plant->drum.wires_changed = true;
+		break;
+	case LW_PLANT_FAULT_TRIM_EARLY:
+	case LW_PLANT_FAULT_TRIM_LATE:
+		plant->trim_pressed[fault == LW_PLANT_FAULT_TRIM_LATE] = argument != 0;
+		break;
+	case LW_PLANT_FAULT_SWITCH_LATE:
+		plant->limit[LW_PLANT_PLUS].shift_s = argument / 1e6;
+		plant->limit[LW_PLANT_MINUS].shift_s = argument / 1e6;
 		break;
 	case LW_PLANT_FAULT_COUNT:
 		break;

@@ -1,6 +1,7 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * @brief What the parts of the plant need of each other. Not for hosts.
+ * @brief The parts of the plant, the lower first; each uses only those above it. Not for hosts.
  *
  * The world is computed ahead by one substep: at its beginning the motion over the whole substep is
  * known (constant speed of drum and carriage), and so are the instants of what happens in it.
@@ -8,34 +9,7 @@
 #ifndef LW_PLANT_INTERNAL_H
 #define LW_PLANT_INTERNAL_H
 
-#include <lw/plant.h>
-
-#define NS_PER_US 1000u
-#define NS_PER_MS 1000000u
-#define S_PER_NS  1e-9
-
-/** The substep in seconds. */
-#define SUBSTEP_S (LW_PLANT_SUBSTEP_NS * S_PER_NS)
-
-/** Time between two changes of a dithering encoder, or of pulses that the drum has not made. */
-#define DITHER_INTERVAL_NS 20000u
-
-static inline uint64_t earlier_ns(uint64_t a_ns, uint64_t b_ns)
-{
-	return a_ns < b_ns ? a_ns : b_ns;
-}
-
-/** Beginning of the substep that is under way. */
-static inline uint64_t substep_begin_ns(const struct lw_plant *plant)
-{
-	return plant->substep_ns - LW_PLANT_SUBSTEP_NS;
-}
-
-/** Uniformly distributed in [0, range). */
-uint32_t lw_plant_random(struct lw_plant *plant, uint32_t range);
-
-/** Plan when switches and trigger meet the carriage between now and the end of the substep. */
-void lw_plant_plan_contacts(struct lw_plant *plant);
+#include "plant_base.h"
 
 void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config *config);
 /** Plan the drum's motion over the substep that begins at begin_ns. */
@@ -44,6 +18,13 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns);
 uint32_t lw_plant_drum_transition(struct lw_plant *plant);
 /** Execute the planned change of a dither or an extra pulse. @return pins that changed */
 uint32_t lw_plant_drum_dither(struct lw_plant *plant);
+
+/** Note whether the transitions until the next rare event are plain. */
+void lw_plant_drum_note_plain(struct lw_plant_drum *drum);
+/** Execute what is due at the encoder's wires now. @return pins that changed */
+uint32_t lw_plant_drum_wires(struct lw_plant *plant);
+/** A wire of the encoder breaks, or is mended: enum lw_plant_channel_fault. */
+void lw_plant_drum_channel(struct lw_plant_drum *drum, int channel, uint8_t fault, uint64_t now_ns);
 
 void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
 			    const struct lw_plant_config *config);
@@ -65,5 +46,15 @@ void lw_plant_switch_plan(struct lw_plant_switch *contact, const struct lw_plant
 void lw_plant_switch_run(struct lw_plant *plant, struct lw_plant_switch *contact);
 /** Bring the pins of all switches up to date. @return pins that changed */
 uint32_t lw_plant_switch_pins(struct lw_plant *plant);
+
+/** Plan when switches and trigger meet the carriage between now and the end of the substep. */
+void lw_plant_plan_contacts(struct lw_plant *plant);
+/** Note between which places nothing is to be planned, as switches and trigger are now. */
+void lw_plant_note_clear(struct lw_plant *plant);
+/** Does the carriage stay between them over the substep that begins now? Nothing is planned yet. */
+bool lw_plant_is_clear(const struct lw_plant *plant);
+
+/** Rope on the drum, layer by layer; off a bare drum it is negative. */
+double lw_plant_rope_um(const struct lw_plant *plant);
 
 #endif /* LW_PLANT_INTERNAL_H */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief Switches: where the pole moves, and how its contacts open, travel, close and bounce.
@@ -89,7 +90,8 @@ uint32_t lw_plant_switch_pins(struct lw_plant *plant)
 		plant->pins.limit[side].no_closed = no_closed;
 		plant->pins.limit[side].nc_closed = nc_closed;
 
-		bool overtravel = plant->overtravel[side].actuated;
+		bool overtravel = plant->overtravel[side].actuated ||
+				  plant->now_ns < plant->overtravel[side].blip_end_ns;
 
 		if (overtravel != plant->pins.overtravel[side]) {
 			changed |= (uint32_t)LW_PLANT_OVERTRAVEL_PLUS << side;

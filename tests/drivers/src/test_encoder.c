@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The encoder driver together with the core's decoder: every edge mode, dither, transitions that
  * cannot be, channels on two ports, the index pulse.
@@ -9,7 +10,7 @@
 #include <zephyr/ztest.h>
 
 #include "lw/drivers/encoder.h"
-#include "lw/quadrature.h"
+#include "lw/motion/quadrature.h"
 
 static const struct device *const encoder = DEVICE_DT_GET(DT_NODELABEL(encoder));
 static const struct device *const split_encoder = DEVICE_DT_GET(DT_NODELABEL(split_encoder));
@@ -36,8 +37,9 @@ static void on_edge(bool a, bool b, void *user_data)
 	calls++;
 }
 
-static void on_index(void *user_data)
+static void on_index(bool late, void *user_data)
 {
+	zassert_false(late);
 	ARG_UNUSED(user_data);
 	index_pulses++;
 }

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The limit switch driver together with the core's debouncing: both contact styles, bounce, the
  * hook in interrupt context.
@@ -7,7 +8,7 @@
 #include <zephyr/ztest.h>
 
 #include "lw/drivers/limit_switch.h"
-#include "lw/limit_switch.h"
+#include "lw/control/limit_switch.h"
 
 enum {
 	PAIR_NO = 10,

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The step and direction driver: order and times of the edges at its outputs, polarity, enable,
  * alarm. Emulated pins tell every write, so the times are those of the simulated clock, which
@@ -97,6 +98,26 @@ ZTEST(step_dir, test_every_step_is_one_pulse)
 		zassert_equal(edges[i].level, i % 2 == 0);
 		zassert_true(i == 0 || edges[i].time_us - edges[i - 1].time_us >= 1);
 	}
+}
+
+ZTEST(step_dir, test_several_steps_at_once)
+{
+	lw_step_dir_step(stepper, 3);
+	zassert_equal(edge_count, 1 + 2 * 3);
+	zassert_true(edges[0].pin == DIR && edges[0].level);
+	zassert_false(lw_step_dir_take_lost(stepper));
+}
+
+ZTEST(step_dir, test_a_direction_that_is_prepared)
+{
+	lw_step_dir_prepare(stepper, -1);
+	zassert_equal(edge_count, 0, "it stands there already");
+	lw_step_dir_prepare(stepper, 1);
+	zassert_equal(edge_count, 1);
+	zassert_true(edges[0].pin == DIR && edges[0].level);
+	lw_step_dir_step(stepper, 1);
+	zassert_equal(edge_count, 3);
+	zassert_equal(edges[1].pin, STEP);
 }
 
 ZTEST(step_dir, test_direction_is_held_after_the_pulse)

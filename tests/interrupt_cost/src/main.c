@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * How many instructions lie between an encoder interrupt and the step that it gives, the core's and
  * the operating system's apart. Under QEMU's -icount every instruction takes the same virtual time,
@@ -7,8 +8,8 @@
 #include <zephyr/irq.h>
 #include <zephyr/ztest.h>
 
-#include "lw/controller.h"
-#include "lw/params.h"
+#include "lw/control/controller.h"
+#include "lw/control/params.h"
 
 /** An interrupt of the board that nothing drives. */
 #define LINE 31
@@ -100,7 +101,7 @@ ZTEST(interrupt_cost, test_an_edge_costs_what_it_may)
 
 	zassert_ok(lw_params_derive(&lw_params_default, &derived, &why));
 	lw_controller_init(&controller, &lw_params_default, &derived, &inputs, 0);
-	lw_motion_place(&controller.motion, controller.motion.window, 0, derived.ks);
+	lw_motion_set_position(&controller.motion, controller.motion.window, 0, derived.ks);
 	lw_motion_set_source(&controller.motion, LW_EDGE_SOURCE_ENCODER);
 	controller.state = LW_STATE_TRACKING;
 	/* The first edge after a change looks at everything: it is not the one to measure. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * A flash in RAM, written by words of 4 bytes, erased to 0xFF by pages. The power can be cut in any

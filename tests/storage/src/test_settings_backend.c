@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Whatever happens to the power, each value is the one that was saved last; the one that was being
  * saved may be the one before.

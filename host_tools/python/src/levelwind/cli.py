@@ -1,7 +1,9 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `levelwind`."""
 
+import shutil
 import signal
-import sys
+from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
@@ -14,14 +16,26 @@ from levelwind.commands import (
     cam,
     conformance,
     field,
+    lay,
     log,
     offline,
     operate,
     parameters,
+    rope,
+    serve,
 )
 from levelwind.errors import ToolError
+from levelwind.show import terminal
 
 EXIT_INTERRUPTED = 130
+HELP_COLUMNS_MIN = 72
+
+
+def _is_by_ctrl_c(error: BaseException | None) -> bool:
+    """Ctrl-C came first, and the error tells what it has cut off."""
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__context__
+    return error is not None
 
 
 class _Group(TyperGroup):
@@ -32,31 +46,36 @@ class _Group(TyperGroup):
         try:
             return super().invoke(ctx)
         except ToolError as error:
-            print(f"levelwind: {error}", file=sys.stderr)
-            raise typer.Exit(1) from None
+            terminal.say(f"levelwind: {error}")
+            raise typer.Exit(EXIT_INTERRUPTED if _is_by_ctrl_c(error) else 1) from None
         except KeyboardInterrupt:
             raise typer.Exit(EXIT_INTERRUPTED) from None
 
 
 app = typer.Typer(
     cls=_Group,
-    help="Set up, watch and exercise a levelwind controller over Modbus RTU.",
+    help="Set up, watch and exercise a levelwind controller over Modbus.",
     epilog="Port: --port or the environment variable LEVELWIND_PORT. "
     "Exit status: 0 done, 1 failed or refused, 2 wrong usage, 130 Ctrl-C.",
+    # The frames of the help need room, or option names would be cut.
+    rich_markup_mode="rich" if shutil.get_terminal_size().columns >= HELP_COLUMNS_MIN else None,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
 )
 
-for panel, commands in {
+COMMANDS: dict[str, dict[str, Callable[..., None]]] = {
     "Operate": {
         "identify": operate.identify,
         "status": operate.status,
         "watch": operate.watch,
         "log": log.log,
         "index": operate.index,
+        "reacquire": operate.reacquire,
         "stop": operate.stop,
         "clear-fault": operate.clear_fault,
+        "acknowledge": operate.acknowledge,
+        "set-rope": operate.set_rope,
         "mode": operate.mode,
         "jog": operate.jog,
         "trim": operate.trim,
@@ -76,9 +95,14 @@ for panel, commands in {
         "restore": field.restore,
         "run": field.run,
     },
+    "Serve": {
+        "serve": serve.serve,
+    },
     "Without a controller": {
         "map": parameters.map_,
         "plan": offline.plan,
+        "lay": lay.lay,
+        "rope": rope.rope,
         "replay": offline.replay,
     },
     "Simulator": {
@@ -89,9 +113,11 @@ for panel, commands in {
     "Any Modbus RTU slave": {
         "conformance": conformance.conformance,
     },
-}.items():
+}
+for panel, commands in COMMANDS.items():
     for name, function in commands.items():
         app.command(name, rich_help_panel=panel)(function)
+app.add_typer(serve.launches, name="launches", rich_help_panel="Serve")
 app.add_typer(cam.app, name="cam", rich_help_panel="Without a controller")
 
 
@@ -105,4 +131,5 @@ def main() -> None:
     signal.signal(signal.SIGTERM, _end)
     if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:  # as nohup wants it
         signal.signal(signal.SIGHUP, _end)
-    app()
+    terminal.prepare()
+    terminal.run(app)

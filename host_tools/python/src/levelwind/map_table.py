@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The Modbus map: every point, enumeration, limit and default.
 
 Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
@@ -5,12 +6,13 @@ Do not edit.
 """
 # ruff: noqa: E501
 
+import builtins
 from dataclasses import dataclass, field
 from enum import IntEnum
 from typing import Literal
 
 Space = Literal["coil", "discrete", "holding", "input"]
-Type = Literal["bit", "u16", "i16", "u32", "i32", "i64"]
+PointType = Literal["bit", "u16", "i16", "u32", "i32", "i64"]
 
 
 class MapEnum(IntEnum):
@@ -19,7 +21,7 @@ class MapEnum(IntEnum):
     label: str
     text: str
 
-    def __new__(cls, value: int, label: str, text: str) -> "MapEnum":
+    def __new__(cls, value: int, label: str = "", text: str = "") -> "MapEnum":
         member = int.__new__(cls, value)
         member._value_ = value
         member.label = label
@@ -47,14 +49,27 @@ class State(MapEnum):
     READY = (
         6,
         "ready",
-        "Indexed and at rest. Follows the drum as soon as the mode is track and the drum is at rest",
+        "Indexed and at rest. In mode track it follows the drum once that rests; after a stop, write the mode again",
     )
     TRACKING = 7, "tracking", "Following the drum"
-    CENTRING = 8, "centring", "Moving to the centre, or back into the sweep before a hand-over"
-    CENTRED = 9, "centred", "Held at the centre, the drum is not followed"
+    CENTRING = (
+        8,
+        "centring",
+        "Moving to the centre, to where the rope goes on, or back into the sweep before a hand-over",
+    )
+    CENTRED = (
+        9,
+        "centred",
+        "Held at the centre, the drum is not followed. For a launch set the mode to track",
+    )
     JOGGING = 10, "jogging", "Moving by hand"
-    OFF = 11, "off", "Stepper without current, position unknown"
+    OFF = 11, "off", "Stepper without current, position unknown. Set the mode to track, then index"
     FAULT = 12, "fault", "Stopped by a fault, see the register fault"
+    REACQUIRING = (
+        13,
+        "reacquiring",
+        "Taking up a turning drum after a restart in a launch: on the way to a limit switch, place unknown",
+    )
 
 
 class Mode(MapEnum):
@@ -87,7 +102,7 @@ class Fault(MapEnum):
     BOTH_SWITCHES_ACTIVE = (
         4,
         "both_switches_active",
-        "Both limit switches are active at once. Check the switch wiring",
+        "Both limit switches, or both overtravel switches, are active at once. Check the switch wiring",
     )
     BACK_OFF_NO_RELEASE = (
         5,
@@ -107,12 +122,12 @@ class Fault(MapEnum):
     OVERTRAVEL_PLUS = (
         8,
         "overtravel_plus",
-        "Plus overtravel switch: stepper disabled, only motion toward minus is allowed",
+        "Plus overtravel switch: stepper disabled, only motion toward minus is allowed. If the carriage is not there, check this switch and its wire",
     )
     OVERTRAVEL_MINUS = (
         9,
         "overtravel_minus",
-        "Minus overtravel switch: stepper disabled, only motion toward plus is allowed",
+        "Minus overtravel switch: stepper disabled, only motion toward plus is allowed. If the carriage is not there, check this switch and its wire",
     )
     OVERSPEED = (
         10,
@@ -128,6 +143,16 @@ class Fault(MapEnum):
         12,
         "stepper_alarm",
         "The stepper driver reports an alarm: steps may be lost. Look at the driver, then index again",
+    )
+    REACQUIRE_NO_SWITCH = (
+        13,
+        "reacquire_no_switch",
+        "Taking up a turning drum: no limit switch within the travel. Is the carriage free, is the stepper powered?",
+    )
+    REACQUIRE_WRONG_SWITCH = (
+        14,
+        "reacquire_wrong_switch",
+        "Taking up a turning drum: the opposite switch came. Check the stepper direction and which switch is which",
     )
 
 
@@ -156,6 +181,27 @@ class Command(MapEnum):
         10,
         "try_line",
         "Use the active line settings now; the old ones again if no valid request comes within line_confirm_s",
+    )
+    ACKNOWLEDGE_ROPE = (
+        11,
+        "acknowledge_rope",
+        "Somebody has looked at the rope that was laid while the carriage stood; taken after an indexing only",
+    )
+    SET_ROPE = 12, "set_rope", "So much rope is on the drum: set_rope_mm. The drum must be at rest"
+    TRIM_EARLY = (
+        13,
+        "trim_early",
+        "Reverse earlier at the side that the carriage moves toward: by trim_step_um, while tracking",
+    )
+    TRIM_LATE = (
+        14,
+        "trim_late",
+        "Reverse later at the side that the carriage moves toward: by trim_step_um, while tracking",
+    )
+    REACQUIRE = (
+        15,
+        "reacquire",
+        "Take up a turning drum from rest, after a restart in a launch: to the first limit switch, then on. The position must be unknown",
     )
     CAM_CHECK = 30, "cam_check", "Check the uploaded cam table as a whole, and keep it"
     CAM_ACTIVATE = (
@@ -192,7 +238,11 @@ class Reason(MapEnum):
     BAD_COUNT = 6, "bad_count", "The count is zero or too large for this function"
     BAD_LENGTH = 7, "bad_length", "The request is shorter or longer than its function and count say"
     BAD_COIL_VALUE = 8, "bad_coil_value", "A coil is written with 0x0000 or 0xFF00"
-    SEVERAL_COMMANDS = 9, "several_commands", "One request can carry one command only"
+    SEVERAL_COMMANDS = (
+        9,
+        "several_commands",
+        "One request can give one command or jog, and a new trim beside neither a jog nor a trim command: send the other by itself",
+    )
     BUSY_TRACKING = (
         10,
         "busy_tracking",
@@ -264,7 +314,7 @@ class Reason(MapEnum):
     POSITION_OVERFLOW = (
         42,
         "position_overflow",
-        "A position is beyond 32767 microsteps: fewer microsteps per revolution or a shorter travel",
+        "A position or the travel is beyond 32700 microsteps: fewer microsteps per revolution or a shorter travel",
     )
     TRAVEL_TOO_SHORT = (
         43,
@@ -289,7 +339,32 @@ class Reason(MapEnum):
     DEBOUNCE_TOO_LONG = (
         47,
         "debounce_too_long",
-        "At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced",
+        "At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch is debounced (and switch_delay_us is over)",
+    )
+    BREAKER_ONE_CYCLE = (
+        48,
+        "breaker_one_cycle",
+        "breaker_cycles must be 0 (no ribbon breaker) or at least 2: up and down takes two",
+    )
+    CORE_THINNER_THAN_ROPE = (
+        49,
+        "core_thinner_than_rope",
+        "The bare drum cannot be thinner than the rope",
+    )
+    PACKING_TOO_SMALL = (
+        50,
+        "packing_too_small",
+        "rope_packing_permille must be 0 (not known) or at least 100",
+    )
+    DRUM_NARROWER_THAN_ROPE = (
+        51,
+        "drum_narrower_than_rope",
+        "The rope is thicker than the drum is wide between the far points of the reversals",
+    )
+    SWITCH_DELAY_TOO_LONG = (
+        52,
+        "switch_delay_too_long",
+        "At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the reversal point before the switch tells (switch_delay_us)",
     )
     LOCKED = 60, "locked", "The write lock is closed: write the code to the register unlock"
     WRONG_CODE = 61, "wrong_code", "This is not the code of the write lock"
@@ -394,6 +469,49 @@ class Reason(MapEnum):
         "cam_advances",
         "A cam table that advances leaves the flanges behind: it needs cam_axis free",
     )
+    ENCODER_DOUBTFUL = (
+        90,
+        "encoder_doubtful",
+        "One encoder channel changes and the other one does not follow: the drum may be turning. Wait until it rests; if it rests, look at the encoder and its wires",
+    )
+    DRUM_RUNNING = (
+        91,
+        "drum_running",
+        "The master says that the drum turns: write drum_running 0 first",
+    )
+    ROPE_INDEX_FIRST = (
+        96,
+        "rope_index_first",
+        "Look at the rope and index first: rope laid while the carriage stood is acknowledged after an indexing",
+    )
+    ROPE_NOT_DESCRIBED = (
+        97,
+        "rope_not_described",
+        "Metres of rope need rope_diameter_um, drum_core_diameter_um and rope_packing_permille: set them, apply, then set_rope",
+    )
+    ROPE_LENGTH_MISSING = (
+        98,
+        "rope_length_missing",
+        "Write set_rope_mm first: so many millimetres of rope are on the drum",
+    )
+    ROPE_TOO_LONG = (
+        99,
+        "rope_too_long",
+        "So much rope does not go onto this drum: check set_rope_mm, drum_core_diameter_um and rope_packing_permille",
+    )
+    TRIM_NOT_FOLLOWING = (
+        100,
+        "trim_not_following",
+        "Only a carriage that follows the drum by the reversing screw has a reversal to make earlier or later",
+    )
+    DRUM_AT_REST = 101, "drum_at_rest", "The drum must turn for this; at rest give index"
+    POSITION_KNOWN = (
+        102,
+        "position_known",
+        "The position is known: write mode track, and the drum is followed once it rests",
+    )
+    FAULT_STANDS = 103, "fault_stands", "A fault stands: remove its cause, then clear_fault first"
+    NOT_MODE_TRACK = 104, "not_mode_track", "Only in mode track with motion_profile screw"
 
 
 class Host(MapEnum):
@@ -469,7 +587,7 @@ class Event(MapEnum):
     SLOT_DAMAGED = (
         4,
         "slot_damaged",
-        "A stored record was damaged. Detail: slot, 0 and 1 parameters, 2 and 3 log, 4 and 5 cam tables",
+        "A stored record was damaged. Detail: slot, 0 and 1 parameters, 2 and 3 log, 4 and 5 cam tables, 6 and 7 what needs a look at the rope",
     )
     SLOT_NEWER = 5, "slot_newer", "A stored record of newer firmware was not read. Detail: slot"
     SLOT_REFUSED = 6, "slot_refused", "A stored parameter set was not accepted. Detail: slot"
@@ -486,10 +604,26 @@ class Event(MapEnum):
     STOPPED = 16, "stopped", "The command stop"
     FAULT_SET = 20, "fault_set", "Stopped by a fault"
     FAULT_CLEARED = 21, "fault_cleared", "The fault was acknowledged"
-    LOS1_PLUS = 22, "los1_plus", "LOS type 1+. Detail: how many since power-up"
-    LOS1_MINUS = 23, "los1_minus", "LOS type 1-. Detail: how many since power-up"
-    LOS2_PLUS = 24, "los2_plus", "LOS type 2+. Detail: how many since power-up"
-    LOS2_MINUS = 25, "los2_minus", "LOS type 2-. Detail: how many since power-up"
+    LOS1_PLUS = (
+        22,
+        "los1_plus",
+        "Synchronization lost (LOS type 1+): the reversal at plus was entered, its switch had not triggered. Detail: how many since power-up",
+    )
+    LOS1_MINUS = (
+        23,
+        "los1_minus",
+        "Synchronization lost (LOS type 1-): the reversal at minus was entered, its switch had not triggered. Detail: how many since power-up",
+    )
+    LOS2_PLUS = (
+        24,
+        "los2_plus",
+        "Synchronization lost (LOS type 2+): the plus switch triggered out of its place. Detail: how many since power-up",
+    )
+    LOS2_MINUS = (
+        25,
+        "los2_minus",
+        "Synchronization lost (LOS type 2-): the minus switch triggered out of its place. Detail: how many since power-up",
+    )
     WIRING_PLUS = 26, "wiring_plus", "Wiring fault of the plus limit switch"
     WIRING_MINUS = 27, "wiring_minus", "Wiring fault of the minus limit switch"
     OVERSPEED_WARNING = (
@@ -497,8 +631,28 @@ class Event(MapEnum):
         "overspeed_warning",
         "The drum exceeded overspeed_warning_edges_per_s. Detail: edges/s",
     )
+    SWITCH_IMPLAUSIBLE = (
+        36,
+        "switch_implausible",
+        "A limit switch said what the known position makes impossible",
+    )
     MASTER_LOST = 30, "master_lost", "The Modbus master fell silent"
     MASTER_BACK = 31, "master_back", "The Modbus master is back"
+    ENCODER_FAULT = (
+        32,
+        "encoder_fault",
+        "The encoder does not tell the drum's motion. A loss of synchronization",
+    )
+    LINE_BABBLE = (
+        34,
+        "line_babble",
+        "Bytes came on the line without a silence for more than a second. Detail: how often since power-up",
+    )
+    LINE_ECHO = (
+        35,
+        "line_echo",
+        "The line gives back what is sent on it. Detail: echoes dropped since power-up",
+    )
     APPLIED = 40, "applied", "Staged parameters became active"
     APPLY_REFUSED = 41, "apply_refused", "The staged parameters were not accepted"
     SAVED = 42, "saved", "The active parameters were stored. Detail: sequence number of the record"
@@ -507,6 +661,83 @@ class Event(MapEnum):
     CAM_ACTIVATED = 45, "cam_activated", "A cam table came into force. Detail: its version"
     LOCK_OPENED = 50, "lock_opened", "The write lock was opened"
     LOCK_CLOSED = 51, "lock_closed", "The write lock closed"
+    ROPE_LAID_STANDING = (
+        60,
+        "rope_laid_standing",
+        "Rope was laid while the carriage stood. Detail: drum turns so far, in thousandths",
+    )
+    ROPE_ACKNOWLEDGED = (
+        61,
+        "rope_acknowledged",
+        "Rope laid while the carriage stood was acknowledged. Detail: drum turns, in thousandths",
+    )
+    ODOMETER_DOUBTFUL = (
+        62,
+        "odometer_doubtful",
+        "The drum turned while the storage was written: edges may be missing. Detail: edges that were counted meanwhile",
+    )
+    LOOK_PENDING = (
+        63,
+        "look_pending",
+        "Since before this power-up the rope needs a look. Detail: bits as in look_before_power_up",
+    )
+    ROPE_SET = 64, "rope_set", "The rope on the drum was told (set_rope). Detail: mm"
+    TRIMMED = (
+        65,
+        "trimmed",
+        "The reversals were trimmed by the buttons. Detail: the trim of that side, um",
+    )
+    TRIM_REFUSED = 66, "trim_refused", "A trim by the buttons was refused"
+    RESUMED = (
+        67,
+        "resumed",
+        "The carriage went to where the rope goes on, and takes up direction and slope there. Detail: position in um",
+    )
+    REACQUIRE_STARTED = (
+        68,
+        "reacquire_started",
+        "The carriage began to take up a turning drum, after a restart in a launch. Detail: toward plus 1, toward minus -1",
+    )
+    REACQUIRE_DONE = (
+        69,
+        "reacquire_done",
+        "It was indexed on a limit switch, and follows. The rope may be laid wrong until an indexing. Detail: how far it had been counted from its place, um",
+    )
+    CLOCK_FALLBACK = 70, "clock_fallback", "The processor started without its external clock"
+    MEMORY_CORRECTED = (
+        71,
+        "memory_corrected",
+        "A bit of the active parameters or of the law in force had flipped in memory and was set right; the law also tells a LOS. Detail: how often since power-up",
+    )
+
+
+class EncoderFault(MapEnum):
+    """What is wrong with the encoder."""
+
+    NONE = 0, "none", "Nothing"
+    A_STILL = 1, "a_still", "Channel A stands still while channel B changes"
+    B_STILL = 2, "b_still", "Channel B stands still while channel A changes"
+    A_FLICKERS = (
+        3,
+        "a_flickers",
+        "Channel A does not follow channel B: a loose wire, or a drum that chatters",
+    )
+    B_FLICKERS = (
+        4,
+        "b_flickers",
+        "Channel B does not follow channel A: a loose wire, or a drum that chatters",
+    )
+    ILLEGAL = 5, "illegal", "Both channels change at once more often than encoder_illegal_permille"
+    INDEX_MISFIT = (
+        6,
+        "index_misfit",
+        "The index pulses do not fit the edges: edges are lost, or too many",
+    )
+    NO_EDGES = (
+        7,
+        "no_edges",
+        "The master says that the drum turns (drum_running), and no edge came for drum_watch_ms",
+    )
 
 
 class MotionProfile(MapEnum):
@@ -595,6 +826,11 @@ class BenchCommand(MapEnum):
     )
     PROFILE_START = 3, "profile_start", "Play the profile from its beginning"
     POWER_CUT = 4, "power_cut", "Restart the controller; the plant goes on"
+    RESTART = (
+        10,
+        "restart",
+        "The same, but what its memory keeps over a restart by the watchdog is kept",
+    )
     SLIP = 5, "slip", "Move the carriage by bench_argument microsteps against the stepper"
     LOSE_PULSES = 6, "lose_pulses", "Swallow the next bench_argument encoder pulses"
     DITHER = 7, "dither", "Rock the encoder bench_argument times about the present edge"
@@ -607,6 +843,19 @@ class BenchCommand(MapEnum):
         9,
         "place_carriage",
         "Put the carriage at bench_argument micrometres by hand (stepper off)",
+    )
+
+
+class ChannelFault(MapEnum):
+    """Faults of a simulated encoder channel."""
+
+    NONE = 0, "none", "Works"
+    STUCK_LOW = 1, "stuck_low", "Always low"
+    STUCK_HIGH = 2, "stuck_high", "Always high"
+    FLICKER = (
+        3,
+        "flicker",
+        "A loose wire: low for a millisecond or two, then right for as long, at random",
     )
 
 
@@ -631,7 +880,7 @@ class TriggerFault(MapEnum):
 
 
 class Flag(MapEnum):
-    """Discrete inputs, and bit numbers of the point flags."""
+    """Discrete inputs; bit n of the point flags is n, of flags_2 32 + n."""
 
     INDEXED = 0, "indexed", "The position is known"
     TRACKING = 1, "tracking", "The carriage follows the drum"
@@ -642,7 +891,7 @@ class Flag(MapEnum):
     LOS = (
         6,
         "los",
-        "Any loss of synchronization since the last indexing: the rope may be laid wrong",
+        "Any loss of synchronization since the last indexing, also before a power cut: the rope may be laid wrong",
     )
     LOS1_PLUS = (
         7,
@@ -705,21 +954,125 @@ class Flag(MapEnum):
         "The last restart was made by the watchdog, or after a fault of the processor: a part of the firmware had stopped",
     )
     CAM_QUEUED = 31, "cam_queued", "A cam table waits for the end of the cycle"
+    SET_UNCONFIRMED = (
+        32,
+        "set_unconfirmed",
+        "Real hardware with factory values that nobody has saved: they describe another winch",
+    )
+    ROPE_LAID_STANDING = (
+        33,
+        "rope_laid_standing",
+        "Rope was laid while the carriage stood, also before a power cut: look at it, index, then acknowledge_rope",
+    )
+    ODOMETER_DOUBTFUL = (
+        34,
+        "odometer_doubtful",
+        "The drum turned while the storage was written, so edges may be missing in rope_mm and net_edges (until an indexing)",
+    )
+    SWITCH_IMPLAUSIBLE = (
+        35,
+        "switch_implausible",
+        "A limit switch says what the known position makes impossible: broken wire, stuck or moved switch",
+    )
+    ENCODER_DOUBTFUL = (
+        36,
+        "encoder_doubtful",
+        "One encoder channel changes without the other: the drum may turn unseen. Not sticky",
+    )
+    ENCODER_FAULT = (
+        37,
+        "encoder_fault",
+        "The encoder does not tell the drum's motion: a loss of synchronization, sticky until an indexing has succeeded",
+    )
+    CLOCK_FALLBACK = (
+        38,
+        "clock_fallback",
+        "The external clock of the processor is missing: it runs by its internal oscillator, which may be a few percent off",
+    )
+    LINE_BABBLE = (
+        39,
+        "line_babble",
+        "Within the last 10 s bytes came on the line without a silence for more than a second",
+    )
+    LINE_ECHO = (
+        40,
+        "line_echo",
+        "Within the last 10 s the line gave back what was sent on it; that was dropped",
+    )
+    ROPE_DOUBTFUL = (
+        41,
+        "rope_doubtful",
+        "The metres of rope on the drum may be wrong: not told since the power-up, or edges were lost. Give set_rope where they are known",
+    )
+    RESUME_DOUBTFUL = (
+        42,
+        "resume_doubtful",
+        "The drum may have turned since it was kept where the rope goes on, or the carriage stood elsewhere: not gone to. Look where the rope leaves the drum",
+    )
+    REACQUIRED = (
+        43,
+        "reacquired",
+        "After a restart in a launch a turning drum was taken up at an unknown place: a loss of synchronization, until an indexing has succeeded",
+    )
 
 
 class LaunchInhibit(MapEnum):
     """Bit numbers of the point launch_inhibit."""
 
-    NOT_TRACKING = 0, "not_tracking", "The state is not tracking"
-    LOS = 1, "los", "Synchronization was lost: index again"
-    FAULT = 2, "fault", "A fault stands"
-    WIRING = 3, "wiring", "A limit switch has a wiring fault"
-    OVERTRAVEL = 4, "overtravel", "An overtravel switch is actuated"
-    OVERSPEED = 5, "overspeed", "The drum tripped the overspeed limit"
-    MASTER_LOST = 6, "master_lost", "The Modbus master is silent"
-    CORRECTION = 7, "correction", "A re-index correction is pending"
-    STEPPER_ALARM = 8, "stepper_alarm", "The stepper driver reports an alarm"
-    CAM = 9, "cam", "The motion profile is cam and its table cannot be followed; see cam_reason"
+    NOT_TRACKING = (
+        0,
+        "not_tracking",
+        "The carriage does not follow the drum: the state says what to do",
+    )
+    LOS = 1, "los", "Synchronization was lost: look at the rope first, then index"
+    FAULT = 2, "fault", "A fault stands: remove its cause, then index"
+    WIRING = 3, "wiring", "A limit switch has a wiring fault: mend it, then clear_fault"
+    OVERTRAVEL = (
+        4,
+        "overtravel",
+        "An overtravel switch is actuated: index moves the carriage off it, or check the switch and its wire",
+    )
+    OVERSPEED = 5, "overspeed", "The drum tripped the overspeed limit: stop it, then index"
+    MASTER_LOST = (
+        6,
+        "master_lost",
+        "The Modbus master is silent: check the panel or PLC and its line",
+    )
+    CORRECTION = (
+        7,
+        "correction",
+        "A re-index correction waits for the sweep: turn the drum slowly until it is made, or index",
+    )
+    STEPPER_ALARM = (
+        8,
+        "stepper_alarm",
+        "The stepper driver reports an alarm: look at the driver, then index",
+    )
+    CAM = (
+        9,
+        "cam",
+        "The motion profile is cam and its table cannot be followed, see cam_reason: upload another, or set motion_profile to screw",
+    )
+    SET_UNCONFIRMED = (
+        10,
+        "set_unconfirmed",
+        "The factory values are in force, which describe another winch: set the parameters of this one, apply and save",
+    )
+    ROPE_LAID_STANDING = (
+        11,
+        "rope_laid_standing",
+        "Rope was laid while the carriage stood: look at the rope, index, then acknowledge_rope",
+    )
+    SWITCH_IMPLAUSIBLE = (
+        12,
+        "switch_implausible",
+        "A limit switch says what the known position makes impossible: look at both switches and their wires, then index",
+    )
+    ENCODER = (
+        13,
+        "encoder",
+        "The encoder's signals do not fit the drum, or did not since the last indexing: rest the drum, check the encoder and its wires, look at the rope, then index",
+    )
 
 
 # What names the detail of an event; the details of the others are plain numbers.
@@ -729,8 +1082,11 @@ DETAIL_ENUMS: dict[MapEnum, type[MapEnum]] = {
     Event.TRACKING_ENDED: State,
     Event.FAULT_SET: Fault,
     Event.FAULT_CLEARED: Fault,
+    Event.SWITCH_IMPLAUSIBLE: Side,
+    Event.ENCODER_FAULT: EncoderFault,
     Event.APPLY_REFUSED: Reason,
     Event.FACTORY_STAGED: Command,
+    Event.TRIM_REFUSED: Reason,
 }
 
 
@@ -741,7 +1097,7 @@ class Point:
     name: str
     address: int
     space: Space
-    type: Type
+    type: PointType
     text: str
     block: str
     words: int = 1  # registers of one element
@@ -756,8 +1112,9 @@ class Point:
     command: bool = False  # writing a value other than 0 runs a command
     reindex: bool = False  # a change makes the index invalid
     secret: bool = False  # reads max if it is not 0; writing max keeps it
-    enum: type[MapEnum] | None = None  # names of the values
-    bits: type[MapEnum] | None = None  # names of the bits, by bit number
+    enum: "builtins.type[MapEnum] | None" = None  # names of the values
+    bits: "builtins.type[MapEnum] | None" = None  # names of the bits, by bit number
+    bits_from: int = 0  # which of them bit 0 is
     mirrors: dict[str, int] = field(default_factory=dict)  # input register addresses by copy
 
 
@@ -876,6 +1233,71 @@ POINTS: dict[str, Point] = {
             writable=True,
         ),
         Point(
+            name="acknowledge_rope",
+            address=8,
+            space="coil",
+            type="bit",
+            text="Rope laid while the carriage stood has been looked at",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="set_rope",
+            address=9,
+            space="coil",
+            type="bit",
+            text="So much rope is on the drum: set_rope_mm",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="trim_early",
+            address=10,
+            space="coil",
+            type="bit",
+            text="Reverse earlier where the carriage moves to",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="trim_late",
+            address=11,
+            space="coil",
+            type="bit",
+            text="Reverse later where the carriage moves to",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
+            name="reacquire",
+            address=12,
+            space="coil",
+            type="bit",
+            text="Take up a turning drum after a restart in a launch",
+            block="coils",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+            command=True,
+        ),
+        Point(
             name="indexed",
             address=0,
             space="discrete",
@@ -928,7 +1350,7 @@ POINTS: dict[str, Point] = {
             address=6,
             space="discrete",
             type="bit",
-            text="Any loss of synchronization since the last indexing: the rope may be laid wrong",
+            text="Any loss of synchronization since the last indexing, also before a power cut: the rope may be laid wrong",
             block="discretes",
         ),
         Point(
@@ -1132,6 +1554,102 @@ POINTS: dict[str, Point] = {
             block="discretes",
         ),
         Point(
+            name="set_unconfirmed",
+            address=32,
+            space="discrete",
+            type="bit",
+            text="Real hardware with factory values that nobody has saved: they describe another winch",
+            block="discretes",
+        ),
+        Point(
+            name="rope_laid_standing",
+            address=33,
+            space="discrete",
+            type="bit",
+            text="Rope was laid while the carriage stood, also before a power cut: look at it, index, then acknowledge_rope",
+            block="discretes",
+        ),
+        Point(
+            name="odometer_doubtful",
+            address=34,
+            space="discrete",
+            type="bit",
+            text="The drum turned while the storage was written, so edges may be missing in rope_mm and net_edges (until an indexing)",
+            block="discretes",
+        ),
+        Point(
+            name="switch_implausible",
+            address=35,
+            space="discrete",
+            type="bit",
+            text="A limit switch says what the known position makes impossible: broken wire, stuck or moved switch",
+            block="discretes",
+        ),
+        Point(
+            name="encoder_doubtful",
+            address=36,
+            space="discrete",
+            type="bit",
+            text="One encoder channel changes without the other: the drum may turn unseen. Not sticky",
+            block="discretes",
+        ),
+        Point(
+            name="encoder_fault",
+            address=37,
+            space="discrete",
+            type="bit",
+            text="The encoder does not tell the drum's motion: a loss of synchronization, sticky until an indexing has succeeded",
+            block="discretes",
+        ),
+        Point(
+            name="clock_fallback",
+            address=38,
+            space="discrete",
+            type="bit",
+            text="The external clock of the processor is missing: it runs by its internal oscillator, which may be a few percent off",
+            block="discretes",
+        ),
+        Point(
+            name="line_babble",
+            address=39,
+            space="discrete",
+            type="bit",
+            text="Within the last 10 s bytes came on the line without a silence for more than a second",
+            block="discretes",
+        ),
+        Point(
+            name="line_echo",
+            address=40,
+            space="discrete",
+            type="bit",
+            text="Within the last 10 s the line gave back what was sent on it; that was dropped",
+            block="discretes",
+        ),
+        Point(
+            name="rope_doubtful",
+            address=41,
+            space="discrete",
+            type="bit",
+            text="The metres of rope on the drum may be wrong: not told since the power-up, or edges were lost. Give set_rope where they are known",
+            block="discretes",
+        ),
+        Point(
+            name="resume_doubtful",
+            address=42,
+            space="discrete",
+            type="bit",
+            text="The drum may have turned since it was kept where the rope goes on, or the carriage stood elsewhere: not gone to. Look where the rope leaves the drum",
+            block="discretes",
+        ),
+        Point(
+            name="reacquired",
+            address=43,
+            space="discrete",
+            type="bit",
+            text="After a restart in a launch a turning drum was taken up at an unknown place: a loss of synchronization, until an indexing has succeeded",
+            block="discretes",
+        ),
+        Point(
             name="command",
             address=0,
             space="holding",
@@ -1140,7 +1658,7 @@ POINTS: dict[str, Point] = {
             block="setpoints",
             min=0,
             max=32,
-            allowed=(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 30, 31, 32),
+            allowed=(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 30, 31, 32),
             default=0,
             writable=True,
             command=True,
@@ -1195,6 +1713,32 @@ POINTS: dict[str, Point] = {
             max=20000,
             default=0,
             unit="um",
+            writable=True,
+        ),
+        Point(
+            name="drum_running",
+            address=5,
+            space="holding",
+            type="u16",
+            text="1: the master says that the winch turns the drum; see drum_watch_ms",
+            block="setpoints",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="set_rope_mm",
+            address=6,
+            space="holding",
+            type="i32",
+            text="What the command set_rope tells: so much rope is on the drum; -1: nothing was written",
+            block="setpoints",
+            words=2,
+            min=-1,
+            max=10000000,
+            default=-1,
+            unit="mm",
             writable=True,
         ),
         Point(
@@ -1601,7 +2145,7 @@ POINTS: dict[str, Point] = {
             address=135,
             space="holding",
             type="u16",
-            text="Both contacts open longer than this is a wiring fault",
+            text="Both contacts of a pair open, or a single contact not at rest, for longer than this is a wiring fault",
             block="parameters",
             min=1,
             max=90,
@@ -1642,6 +2186,22 @@ POINTS: dict[str, Point] = {
             writable=True,
             reindex=True,
             mirrors={"active": 1137, "stored": 2137},
+        ),
+        Point(
+            name="switch_delay_us",
+            address=139,
+            space="holding",
+            type="u16",
+            text="How late a limit switch tells that it was reached; `levelwind index --rates` measures it (0: at once)",
+            block="parameters",
+            min=0,
+            max=20000,
+            default=0,
+            unit="us",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1139, "stored": 2139},
         ),
         Point(
             name="index_switch",
@@ -1910,6 +2470,37 @@ POINTS: dict[str, Point] = {
             mirrors={"active": 1167, "stored": 2167},
         ),
         Point(
+            name="breaker_millirev",
+            address=168,
+            space="holding",
+            type="u16",
+            text="Ribbon breaker: both dwells grow by up to this much and shrink again, from reversal to reversal of their side",
+            block="parameters",
+            min=0,
+            max=2000,
+            default=0,
+            unit="1/1000 drum rev",
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1168, "stored": 2168},
+        ),
+        Point(
+            name="breaker_cycles",
+            address=169,
+            space="holding",
+            type="u16",
+            text="Ribbon breaker: it goes up and down once in so many double traverses (0: off)",
+            block="parameters",
+            min=0,
+            max=200,
+            default=0,
+            scope="motion",
+            writable=True,
+            reindex=True,
+            mirrors={"active": 1169, "stored": 2169},
+        ),
+        Point(
             name="expert_mode",
             address=170,
             space="holding",
@@ -2079,6 +2670,171 @@ POINTS: dict[str, Point] = {
             scope="line",
             writable=True,
             mirrors={"active": 1187, "stored": 2187},
+        ),
+        Point(
+            name="encoder_watch_transitions_per_s",
+            address=190,
+            space="holding",
+            type="u32",
+            text="One encoder channel that changes faster than this without the other makes the encoder doubtful",
+            block="parameters",
+            words=2,
+            min=100,
+            max=1000000,
+            default=2000,
+            unit="transitions/s",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1190, "stored": 2190},
+        ),
+        Point(
+            name="encoder_watch_ms",
+            address=192,
+            space="holding",
+            type="u16",
+            text="An encoder that is doubtful for this long has a fault",
+            block="parameters",
+            min=50,
+            max=60000,
+            default=500,
+            unit="ms",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1192, "stored": 2192},
+        ),
+        Point(
+            name="encoder_illegal_permille",
+            address=193,
+            space="holding",
+            type="u16",
+            text="Of 1000 transitions so many may change both channels at once, before the encoder has a fault (1000: any)",
+            block="parameters",
+            min=1,
+            max=1000,
+            default=10,
+            unit="1/1000",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1193, "stored": 2193},
+        ),
+        Point(
+            name="drum_watch_ms",
+            address=194,
+            space="holding",
+            type="u16",
+            text="No edge for this long while drum_running is 1: the encoder has a fault (0: not watched)",
+            block="parameters",
+            min=0,
+            max=60000,
+            default=0,
+            unit="ms",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1194, "stored": 2194},
+        ),
+        Point(
+            name="standing_turns_permille",
+            address=199,
+            space="holding",
+            type="u16",
+            text="Rope hauled in while the carriage stands sets rope_laid_standing from so many drum turns on (0: not watched)",
+            block="parameters",
+            min=0,
+            max=10000,
+            default=250,
+            unit="1/1000 drum rev",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1199, "stored": 2199},
+        ),
+        Point(
+            name="rope_diameter_um",
+            address=200,
+            space="holding",
+            type="u16",
+            text="Diameter of the rope (0: not known)",
+            block="parameters",
+            min=0,
+            max=50000,
+            default=0,
+            unit="um",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1200, "stored": 2200},
+        ),
+        Point(
+            name="drum_core_diameter_um",
+            address=201,
+            space="holding",
+            type="u32",
+            text="Diameter of the bare drum (0: not known). With rope_diameter_um and rope_packing_permille, metres of rope follow the growing layers",
+            block="parameters",
+            words=2,
+            min=0,
+            max=5000000,
+            default=0,
+            unit="um",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1201, "stored": 2201},
+        ),
+        Point(
+            name="rope_packing_permille",
+            address=203,
+            space="holding",
+            type="u16",
+            text="How much of the room on the drum the rope fills, fitted from two known lengths; about 600 to 900 (0: not known)",
+            block="parameters",
+            min=0,
+            max=1000,
+            default=0,
+            unit="1/1000",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1203, "stored": 2203},
+        ),
+        Point(
+            name="trim_step_um",
+            address=204,
+            space="holding",
+            type="u16",
+            text="How far trim_early and trim_late shift a reversal point",
+            block="parameters",
+            min=1,
+            max=5000,
+            default=500,
+            unit="um",
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1204, "stored": 2204},
+        ),
+        Point(
+            name="resume",
+            address=205,
+            space="holding",
+            type="u16",
+            text="1: where the drum came to rest is kept, also over a power-off, and after an indexing the carriage first goes there and takes up direction and slope; 0: it begins where the indexing ends",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1205, "stored": 2205},
+        ),
+        Point(
+            name="reacquire_after_restart",
+            address=206,
+            space="holding",
+            type="u16",
+            text="1: where the controller has restarted in a launch (memory kept, the drum still turns), it gives reacquire by itself. THE CARRIAGE MOVES UNASKED",
+            block="parameters",
+            min=0,
+            max=1,
+            default=0,
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1206, "stored": 2206},
         ),
         Point(
             name="motion_profile",
@@ -2264,6 +3020,24 @@ POINTS: dict[str, Point] = {
             enum=Host,
         ),
         Point(
+            name="image_hash_high",
+            address=7,
+            space="input",
+            type="u32",
+            text="What runs: bytes 0 to 3 of the SHA-256 of zephyr.bin, worked out over the flash at power-up (0, and so the low half: not known, as on the simulators)",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="image_hash_low",
+            address=9,
+            space="input",
+            type="u32",
+            text="Bytes 4 to 7 of it",
+            block="status",
+            words=2,
+        ),
+        Point(
             name="state",
             address=100,
             space="input",
@@ -2295,7 +3069,7 @@ POINTS: dict[str, Point] = {
             address=103,
             space="input",
             type="u32",
-            text="All discrete inputs in one pair, bit number = discrete input address",
+            text="The first 32 discrete inputs, bit number = discrete input address",
             block="status",
             words=2,
             bits=Flag,
@@ -2324,7 +3098,7 @@ POINTS: dict[str, Point] = {
             address=108,
             space="input",
             type="i16",
-            text="Carriage position, whole microsteps",
+            text="Carriage position, whole microsteps; a free axis goes on modulo 65536",
             block="status",
             unit="usteps",
         ),
@@ -2363,7 +3137,7 @@ POINTS: dict[str, Point] = {
             address=115,
             space="input",
             type="i32",
-            text="Rope speed, positive hauls in",
+            text="Rope speed, positive hauls in; by rope_radius_um where that is known",
             block="status",
             words=2,
             unit="mm/s",
@@ -2373,7 +3147,7 @@ POINTS: dict[str, Point] = {
             address=117,
             space="input",
             type="i32",
-            text="Rope hauled in (positive) or paid out since power-up",
+            text="Rope hauled in (positive) or paid out since power-up, by the growing layers where the rope on the drum is known; stands still at its limits, 2147 km",
             block="status",
             words=2,
             unit="mm",
@@ -2403,7 +3177,7 @@ POINTS: dict[str, Point] = {
             address=127,
             space="input",
             type="u32",
-            text="Time since power-up",
+            text="Time since power-up; begins anew at 0 after 49.7 days",
             block="status",
             words=2,
             unit="ms",
@@ -2425,6 +3199,73 @@ POINTS: dict[str, Point] = {
             block="status",
             words=2,
             unit="um",
+        ),
+        Point(
+            name="flags_2",
+            address=132,
+            space="input",
+            type="u32",
+            text="The discrete inputs from 32 on, bit number = discrete input address - 32",
+            block="status",
+            words=2,
+            bits=Flag,
+            bits_from=32,
+        ),
+        Point(
+            name="rope_on_drum_mm",
+            address=134,
+            space="input",
+            type="i32",
+            text="Rope on the drum; 0 until set_rope. It may be wrong while rope_doubtful is on",
+            block="status",
+            words=2,
+            unit="mm",
+        ),
+        Point(
+            name="rope_out_mm",
+            address=136,
+            space="input",
+            type="i32",
+            text="Rope wound off since set_rope: what is out, if it was told with all rope in",
+            block="status",
+            words=2,
+            unit="mm",
+        ),
+        Point(
+            name="rope_layer",
+            address=138,
+            space="input",
+            type="u16",
+            text="Layers of rope on the drum, begun ones too; 0: bare, or not known",
+            block="status",
+        ),
+        Point(
+            name="rope_radius_um",
+            address=139,
+            space="input",
+            type="u32",
+            text="Radius of what is wound, from the drum's axis; 0: not known",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="resume_position_um",
+            address=141,
+            space="input",
+            type="i32",
+            text="Where the rope goes on: carriage position when the drum came to rest, also before a power-off; 0 while resume_direction is 0",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="resume_direction",
+            address=143,
+            space="input",
+            type="i16",
+            text="Direction of the carriage there while the drum hauls in: +1 or -1; 0: not known, or resume is 0",
+            block="status",
         ),
         Point(
             name="los1_plus_count",
@@ -2449,7 +3290,7 @@ POINTS: dict[str, Point] = {
             address=203,
             space="input",
             type="u32",
-            text="Its time since power-up",
+            text="Its time since power-up, of that power-up",
             block="status",
             words=2,
             unit="ms",
@@ -2477,7 +3318,7 @@ POINTS: dict[str, Point] = {
             address=213,
             space="input",
             type="u32",
-            text="Its time since power-up",
+            text="Its time since power-up, of that power-up",
             block="status",
             words=2,
             unit="ms",
@@ -2505,7 +3346,7 @@ POINTS: dict[str, Point] = {
             address=223,
             space="input",
             type="u32",
-            text="Its time since power-up",
+            text="Its time since power-up, of that power-up",
             block="status",
             words=2,
             unit="ms",
@@ -2533,7 +3374,7 @@ POINTS: dict[str, Point] = {
             address=233,
             space="input",
             type="u32",
-            text="Its time since power-up",
+            text="Its time since power-up, of that power-up",
             block="status",
             words=2,
             unit="ms",
@@ -2662,7 +3503,7 @@ POINTS: dict[str, Point] = {
             address=325,
             space="input",
             type="u16",
-            text="Event log: events that are not stored yet; they wait for the end of the tracking",
+            text="Event log: events that are not stored yet; they wait until the drum rests",
             block="status",
         ),
         Point(
@@ -2800,6 +3641,160 @@ POINTS: dict[str, Point] = {
             text="Stack that the interrupts have never used (0: not measured)",
             block="status",
             unit="bytes",
+        ),
+        Point(
+            name="encoder_fault_kind",
+            address=360,
+            space="input",
+            type="u16",
+            text="What was wrong with the encoder first since the last indexing (and since the power-up)",
+            block="status",
+            enum=EncoderFault,
+        ),
+        Point(
+            name="encoder_fault_count",
+            address=361,
+            space="input",
+            type="u16",
+            text="Encoder faults since power-up",
+            block="status",
+        ),
+        Point(
+            name="encoder_fault_position_um",
+            address=362,
+            space="input",
+            type="i32",
+            text="Position of the first since the last indexing",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="encoder_fault_time_ms",
+            address=364,
+            space="input",
+            type="u32",
+            text="Its time since power-up",
+            block="status",
+            words=2,
+            unit="ms",
+        ),
+        Point(
+            name="encoder_doubts",
+            address=366,
+            space="input",
+            type="u16",
+            text="How often the encoder became doubtful since power-up",
+            block="status",
+        ),
+        Point(
+            name="encoder_misfit_edges",
+            address=367,
+            space="input",
+            type="i32",
+            text="By how many edges the index pulses contradict the count, net, since the last indexing",
+            block="status",
+            words=2,
+            unit="edges",
+        ),
+        Point(
+            name="memory_corrections",
+            address=369,
+            space="input",
+            type="u16",
+            text="Bits of the active parameters and of the law in force that had flipped in memory and were set right since power-up",
+            block="status",
+        ),
+        Point(
+            name="line_babbles",
+            address=380,
+            space="input",
+            type="u32",
+            text="Times that bytes came on the line without a silence for more than a second, since power-up",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="line_echoes",
+            address=382,
+            space="input",
+            type="u32",
+            text="Own answers that the line gave back, dropped",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="late_requests",
+            address=384,
+            space="input",
+            type="u32",
+            text="Requests that had waited too long and were dropped",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="foreign_answers",
+            address=386,
+            space="input",
+            type="u32",
+            text="Answers of another device as this unit, dropped: two devices have this unit_id, or an echo comes late",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="events_skipped",
+            address=388,
+            space="input",
+            type="u32",
+            text="Events that were not logged because their cause comes and goes too often",
+            block="status",
+            words=2,
+        ),
+        Point(
+            name="rope_standing_millirev",
+            address=390,
+            space="input",
+            type="u32",
+            text="Drum turns of rope laid while the carriage stood, since the last acknowledgement",
+            block="status",
+            words=2,
+            unit="1/1000 drum rev",
+        ),
+        Point(
+            name="rope_standing_position_um",
+            address=392,
+            space="input",
+            type="i32",
+            text="Where the carriage stood at the first of them",
+            block="status",
+            words=2,
+            unit="um",
+        ),
+        Point(
+            name="rope_standing_time_ms",
+            address=394,
+            space="input",
+            type="u32",
+            text="When, since power-up, of that power-up",
+            block="status",
+            words=2,
+            unit="ms",
+        ),
+        Point(
+            name="rope_standing_place_known",
+            address=396,
+            space="input",
+            type="u16",
+            text="1: that position was known; 0: the position had been unknown before",
+            block="status",
+        ),
+        Point(
+            name="look_before_power_up",
+            address=397,
+            space="input",
+            type="u16",
+            text="What needs a look at the rope since before this power-up: 1 LOS 1+, 2 LOS 1-, 4 LOS 2+, 8 LOS 2-, 16 rope laid while the carriage stood, 32 encoder fault, 64 re-acquired",
+            block="status",
         ),
         Point(
             name="command_sequence",
@@ -3022,6 +4017,32 @@ POINTS: dict[str, Point] = {
             unit="edges",
         ),
         Point(
+            name="breaker_edges",
+            address=520,
+            space="input",
+            type="u32",
+            text="Ribbon breaker: most that it adds to a dwell",
+            block="status",
+            words=2,
+            unit="edges",
+        ),
+        Point(
+            name="breaker_cycle_plus",
+            address=522,
+            space="input",
+            type="u16",
+            text="Ribbon breaker: far points passed at plus since the hand-over after the last indexing, net, modulo breaker_cycles",
+            block="status",
+        ),
+        Point(
+            name="breaker_cycle_minus",
+            address=523,
+            space="input",
+            type="u16",
+            text="Ribbon breaker: those at minus",
+            block="status",
+        ),
+        Point(
             name="cam_bank_0_state",
             address=600,
             space="input",
@@ -3202,6 +4223,24 @@ POINTS: dict[str, Point] = {
             enum=SlotState,
         ),
         Point(
+            name="slot_6",
+            address=629,
+            space="input",
+            type="u16",
+            text="Storage: first slot of what needs a look at the rope",
+            block="status",
+            enum=SlotState,
+        ),
+        Point(
+            name="slot_7",
+            address=630,
+            space="input",
+            type="u16",
+            text="Storage: second slot of what needs a look at the rope",
+            block="status",
+            enum=SlotState,
+        ),
+        Point(
             name="cam_upload_name",
             address=3000,
             space="holding",
@@ -3325,7 +4364,7 @@ POINTS: dict[str, Point] = {
             text="Writing a code runs it",
             block="bench",
             min=0,
-            max=9,
+            max=10,
             default=0,
             writable=True,
             command=True,
@@ -3547,6 +4586,30 @@ POINTS: dict[str, Point] = {
             enum=BenchRestart,
         ),
         Point(
+            name="bench_trim_early",
+            address=61465,
+            space="holding",
+            type="u16",
+            text="1 presses the button for early reversal",
+            block="bench",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_trim_late",
+            address=61466,
+            space="holding",
+            type="u16",
+            text="1 presses the button for late reversal",
+            block="bench",
+            min=0,
+            max=1,
+            default=0,
+            writable=True,
+        ),
+        Point(
             name="bench_result",
             address=61469,
             space="holding",
@@ -3651,6 +4714,108 @@ POINTS: dict[str, Point] = {
             min=-3000000,
             max=100000000,
             default=0,
+            writable=True,
+        ),
+        Point(
+            name="bench_encoder_a_fault",
+            address=61620,
+            space="holding",
+            type="u16",
+            text="Fault of encoder channel A",
+            block="bench",
+            min=0,
+            max=3,
+            default=0,
+            writable=True,
+            enum=ChannelFault,
+        ),
+        Point(
+            name="bench_encoder_b_fault",
+            address=61621,
+            space="holding",
+            type="u16",
+            text="Fault of encoder channel B",
+            block="bench",
+            min=0,
+            max=3,
+            default=0,
+            writable=True,
+            enum=ChannelFault,
+        ),
+        Point(
+            name="bench_index_pulses",
+            address=61622,
+            space="holding",
+            type="u16",
+            text="0: the encoder's index channel is not wired",
+            block="bench",
+            min=0,
+            max=1,
+            default=1,
+            writable=True,
+        ),
+        Point(
+            name="bench_rope_layer_um",
+            address=61623,
+            space="holding",
+            type="u16",
+            text="How much each layer of rope makes the drum thicker (its radius); 0: the drum stays as it is",
+            block="bench",
+            min=0,
+            max=50000,
+            default=0,
+            unit="um",
+            writable=True,
+        ),
+        Point(
+            name="bench_rope_layer_milliturns",
+            address=61624,
+            space="holding",
+            type="u32",
+            text="Turns of a layer",
+            block="bench",
+            words=2,
+            min=1,
+            max=100000000,
+            default=33000,
+            unit="1/1000 turn",
+            writable=True,
+        ),
+        Point(
+            name="bench_rope_core_um",
+            address=61626,
+            space="holding",
+            type="u32",
+            text="Diameter of the bare drum",
+            block="bench",
+            words=2,
+            min=0,
+            max=5000000,
+            default=0,
+            unit="um",
+            writable=True,
+        ),
+        Point(
+            name="bench_rope_mm",
+            address=61628,
+            space="holding",
+            type="i32",
+            text="Rope that is really on the drum, beginning bare",
+            block="bench",
+            words=2,
+            unit="mm",
+        ),
+        Point(
+            name="bench_switch_late_us",
+            address=61630,
+            space="holding",
+            type="u16",
+            text="How late the limit switches trigger and release, before the millisecond that a contact travels",
+            block="bench",
+            min=0,
+            max=20000,
+            default=500,
+            unit="us",
             writable=True,
         ),
     )

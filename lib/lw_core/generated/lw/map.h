@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /*
  * The Modbus map: enumerations, structs, addresses, limits and defaults.
  * Generated from modbus_map/registers.yaml by: python3 modbus_map/generate.py
@@ -8,7 +9,7 @@
 
 #include <stdint.h>
 
-#include "lw/point.h"
+#include "lw/map/point.h"
 
 /* Product identification, and what the register self_test reads. */
 #define LW_PRODUCT_VENDOR "levelwind"
@@ -37,22 +38,30 @@ enum lw_state {
 	/** Indexing: coming to rest at the parking place */
 	LW_STATE_PARKING = 5,
 	/**
-	 * Indexed and at rest. Follows the drum as soon as the mode is track and the drum is at
-	 * rest
+	 * Indexed and at rest. In mode track it follows the drum once that rests; after a stop,
+	 * write the mode again
 	 */
 	LW_STATE_READY = 6,
 	/** Following the drum */
 	LW_STATE_TRACKING = 7,
-	/** Moving to the centre, or back into the sweep before a hand-over */
+	/**
+	 * Moving to the centre, to where the rope goes on, or back into the sweep before a hand-
+	 * over
+	 */
 	LW_STATE_CENTRING = 8,
-	/** Held at the centre, the drum is not followed */
+	/** Held at the centre, the drum is not followed. For a launch set the mode to track */
 	LW_STATE_CENTRED = 9,
 	/** Moving by hand */
 	LW_STATE_JOGGING = 10,
-	/** Stepper without current, position unknown */
+	/** Stepper without current, position unknown. Set the mode to track, then index */
 	LW_STATE_OFF = 11,
 	/** Stopped by a fault, see the register fault */
 	LW_STATE_FAULT = 12,
+	/**
+	 * Taking up a turning drum after a restart in a launch: on the way to a limit switch, place
+	 * unknown
+	 */
+	LW_STATE_REACQUIRING = 13,
 };
 
 /** What the carriage shall do */
@@ -84,7 +93,10 @@ enum lw_fault {
 	 * their calibrated positions
 	 */
 	LW_FAULT_INDEX_SPAN = 3,
-	/** Both limit switches are active at once. Check the switch wiring */
+	/**
+	 * Both limit switches, or both overtravel switches, are active at once. Check the switch
+	 * wiring
+	 */
 	LW_FAULT_BOTH_SWITCHES_ACTIVE = 4,
 	/**
 	 * The limit switch did not release although the carriage moved away. Stuck switch, or the
@@ -100,9 +112,15 @@ enum lw_fault {
 	 * short
 	 */
 	LW_FAULT_WIRING_MINUS = 7,
-	/** Plus overtravel switch: stepper disabled, only motion toward minus is allowed */
+	/**
+	 * Plus overtravel switch: stepper disabled, only motion toward minus is allowed. If the
+	 * carriage is not there, check this switch and its wire
+	 */
 	LW_FAULT_OVERTRAVEL_PLUS = 8,
-	/** Minus overtravel switch: stepper disabled, only motion toward plus is allowed */
+	/**
+	 * Minus overtravel switch: stepper disabled, only motion toward plus is allowed. If the
+	 * carriage is not there, check this switch and its wire
+	 */
 	LW_FAULT_OVERTRAVEL_MINUS = 9,
 	/** The drum turned faster than overspeed_trip_edges_per_s, the stepper cannot follow */
 	LW_FAULT_OVERSPEED = 10,
@@ -113,6 +131,16 @@ enum lw_fault {
 	 * again
 	 */
 	LW_FAULT_STEPPER_ALARM = 12,
+	/**
+	 * Taking up a turning drum: no limit switch within the travel. Is the carriage free, is the
+	 * stepper powered?
+	 */
+	LW_FAULT_REACQUIRE_NO_SWITCH = 13,
+	/**
+	 * Taking up a turning drum: the opposite switch came. Check the stepper direction and which
+	 * switch is which
+	 */
+	LW_FAULT_REACQUIRE_WRONG_SWITCH = 14,
 };
 
 /** Momentary commands, by the register command or by the coil of the same name */
@@ -142,6 +170,27 @@ enum lw_command {
 	 * line_confirm_s
 	 */
 	LW_COMMAND_TRY_LINE = 10,
+	/**
+	 * Somebody has looked at the rope that was laid while the carriage stood; taken after an
+	 * indexing only
+	 */
+	LW_COMMAND_ACKNOWLEDGE_ROPE = 11,
+	/** So much rope is on the drum: set_rope_mm. The drum must be at rest */
+	LW_COMMAND_SET_ROPE = 12,
+	/**
+	 * Reverse earlier at the side that the carriage moves toward: by trim_step_um, while
+	 * tracking
+	 */
+	LW_COMMAND_TRIM_EARLY = 13,
+	/**
+	 * Reverse later at the side that the carriage moves toward: by trim_step_um, while tracking
+	 */
+	LW_COMMAND_TRIM_LATE = 14,
+	/**
+	 * Take up a turning drum from rest, after a restart in a launch: to the first limit switch,
+	 * then on. The position must be unknown
+	 */
+	LW_COMMAND_REACQUIRE = 15,
 	/** Check the uploaded cam table as a whole, and keep it */
 	LW_COMMAND_CAM_CHECK = 30,
 	/**
@@ -187,7 +236,10 @@ enum lw_reason {
 	LW_REASON_BAD_LENGTH = 7,
 	/** A coil is written with 0x0000 or 0xFF00 */
 	LW_REASON_BAD_COIL_VALUE = 8,
-	/** One request can carry one command only */
+	/**
+	 * One request can give one command or jog, and a new trim beside neither a jog nor a trim
+	 * command: send the other by itself
+	 */
 	LW_REASON_SEVERAL_COMMANDS = 9,
 	/** Refused while tracking: stop, or set the mode to centre with the drum at rest */
 	LW_REASON_BUSY_TRACKING = 10,
@@ -250,8 +302,8 @@ enum lw_reason {
 	 */
 	LW_REASON_RAMP_DOES_NOT_FIT = 41,
 	/**
-	 * A position is beyond 32767 microsteps: fewer microsteps per revolution or a shorter
-	 * travel
+	 * A position or the travel is beyond 32700 microsteps: fewer microsteps per revolution or a
+	 * shorter travel
 	 */
 	LW_REASON_POSITION_OVERFLOW = 42,
 	/** travel must be at least the distance between the flanges */
@@ -264,9 +316,22 @@ enum lw_reason {
 	LW_REASON_TOO_FEW_EDGES = 46,
 	/**
 	 * At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the
-	 * reversal point before the switch is debounced
+	 * reversal point before the switch is debounced (and switch_delay_us is over)
 	 */
 	LW_REASON_DEBOUNCE_TOO_LONG = 47,
+	/** breaker_cycles must be 0 (no ribbon breaker) or at least 2: up and down takes two */
+	LW_REASON_BREAKER_ONE_CYCLE = 48,
+	/** The bare drum cannot be thinner than the rope */
+	LW_REASON_CORE_THINNER_THAN_ROPE = 49,
+	/** rope_packing_permille must be 0 (not known) or at least 100 */
+	LW_REASON_PACKING_TOO_SMALL = 50,
+	/** The rope is thicker than the drum is wide between the far points of the reversals */
+	LW_REASON_DRUM_NARROWER_THAN_ROPE = 51,
+	/**
+	 * At overspeed_warning_edges_per_s, or at the index rate, the carriage would pass the
+	 * reversal point before the switch tells (switch_delay_us)
+	 */
+	LW_REASON_SWITCH_DELAY_TOO_LONG = 52,
 	/** The write lock is closed: write the code to the register unlock */
 	LW_REASON_LOCKED = 60,
 	/** This is not the code of the write lock */
@@ -339,6 +404,43 @@ enum lw_reason {
 	LW_REASON_CAM_FREE_AXIS = 87,
 	/** A cam table that advances leaves the flanges behind: it needs cam_axis free */
 	LW_REASON_CAM_ADVANCES = 88,
+	/**
+	 * One encoder channel changes and the other one does not follow: the drum may be turning.
+	 * Wait until it rests; if it rests, look at the encoder and its wires
+	 */
+	LW_REASON_ENCODER_DOUBTFUL = 90,
+	/** The master says that the drum turns: write drum_running 0 first */
+	LW_REASON_DRUM_RUNNING = 91,
+	/**
+	 * Look at the rope and index first: rope laid while the carriage stood is acknowledged
+	 * after an indexing
+	 */
+	LW_REASON_ROPE_INDEX_FIRST = 96,
+	/**
+	 * Metres of rope need rope_diameter_um, drum_core_diameter_um and rope_packing_permille:
+	 * set them, apply, then set_rope
+	 */
+	LW_REASON_ROPE_NOT_DESCRIBED = 97,
+	/** Write set_rope_mm first: so many millimetres of rope are on the drum */
+	LW_REASON_ROPE_LENGTH_MISSING = 98,
+	/**
+	 * So much rope does not go onto this drum: check set_rope_mm, drum_core_diameter_um and
+	 * rope_packing_permille
+	 */
+	LW_REASON_ROPE_TOO_LONG = 99,
+	/**
+	 * Only a carriage that follows the drum by the reversing screw has a reversal to make
+	 * earlier or later
+	 */
+	LW_REASON_TRIM_NOT_FOLLOWING = 100,
+	/** The drum must turn for this; at rest give index */
+	LW_REASON_DRUM_AT_REST = 101,
+	/** The position is known: write mode track, and the drum is followed once it rests */
+	LW_REASON_POSITION_KNOWN = 102,
+	/** A fault stands: remove its cause, then clear_fault first */
+	LW_REASON_FAULT_STANDS = 103,
+	/** Only in mode track with motion_profile screw */
+	LW_REASON_NOT_MODE_TRACK = 104,
 };
 
 /** What runs the core */
@@ -422,7 +524,7 @@ enum lw_event {
 	LW_EVENT_DEFAULTS_LOADED = 3,
 	/**
 	 * A stored record was damaged. Detail: slot, 0 and 1 parameters, 2 and 3 log, 4 and 5 cam
-	 * tables
+	 * tables, 6 and 7 what needs a look at the rope
 	 */
 	LW_EVENT_SLOT_DAMAGED = 4,
 	/** A stored record of newer firmware was not read. Detail: slot */
@@ -447,13 +549,25 @@ enum lw_event {
 	LW_EVENT_FAULT_SET = 20,
 	/** The fault was acknowledged */
 	LW_EVENT_FAULT_CLEARED = 21,
-	/** LOS type 1+. Detail: how many since power-up */
+	/**
+	 * Synchronization lost (LOS type 1+): the reversal at plus was entered, its switch had not
+	 * triggered. Detail: how many since power-up
+	 */
 	LW_EVENT_LOS1_PLUS = 22,
-	/** LOS type 1-. Detail: how many since power-up */
+	/**
+	 * Synchronization lost (LOS type 1-): the reversal at minus was entered, its switch had not
+	 * triggered. Detail: how many since power-up
+	 */
 	LW_EVENT_LOS1_MINUS = 23,
-	/** LOS type 2+. Detail: how many since power-up */
+	/**
+	 * Synchronization lost (LOS type 2+): the plus switch triggered out of its place. Detail:
+	 * how many since power-up
+	 */
 	LW_EVENT_LOS2_PLUS = 24,
-	/** LOS type 2-. Detail: how many since power-up */
+	/**
+	 * Synchronization lost (LOS type 2-): the minus switch triggered out of its place. Detail:
+	 * how many since power-up
+	 */
 	LW_EVENT_LOS2_MINUS = 25,
 	/** Wiring fault of the plus limit switch */
 	LW_EVENT_WIRING_PLUS = 26,
@@ -461,10 +575,21 @@ enum lw_event {
 	LW_EVENT_WIRING_MINUS = 27,
 	/** The drum exceeded overspeed_warning_edges_per_s. Detail: edges/s */
 	LW_EVENT_OVERSPEED_WARNING = 28,
+	/** A limit switch said what the known position makes impossible */
+	LW_EVENT_SWITCH_IMPLAUSIBLE = 36,
 	/** The Modbus master fell silent */
 	LW_EVENT_MASTER_LOST = 30,
 	/** The Modbus master is back */
 	LW_EVENT_MASTER_BACK = 31,
+	/** The encoder does not tell the drum's motion. A loss of synchronization */
+	LW_EVENT_ENCODER_FAULT = 32,
+	/**
+	 * Bytes came on the line without a silence for more than a second. Detail: how often since
+	 * power-up
+	 */
+	LW_EVENT_LINE_BABBLE = 34,
+	/** The line gives back what is sent on it. Detail: echoes dropped since power-up */
+	LW_EVENT_LINE_ECHO = 35,
 	/** Staged parameters became active */
 	LW_EVENT_APPLIED = 40,
 	/** The staged parameters were not accepted */
@@ -481,6 +606,71 @@ enum lw_event {
 	LW_EVENT_LOCK_OPENED = 50,
 	/** The write lock closed */
 	LW_EVENT_LOCK_CLOSED = 51,
+	/** Rope was laid while the carriage stood. Detail: drum turns so far, in thousandths */
+	LW_EVENT_ROPE_LAID_STANDING = 60,
+	/**
+	 * Rope laid while the carriage stood was acknowledged. Detail: drum turns, in thousandths
+	 */
+	LW_EVENT_ROPE_ACKNOWLEDGED = 61,
+	/**
+	 * The drum turned while the storage was written: edges may be missing. Detail: edges that
+	 * were counted meanwhile
+	 */
+	LW_EVENT_ODOMETER_DOUBTFUL = 62,
+	/**
+	 * Since before this power-up the rope needs a look. Detail: bits as in look_before_power_up
+	 */
+	LW_EVENT_LOOK_PENDING = 63,
+	/** The rope on the drum was told (set_rope). Detail: mm */
+	LW_EVENT_ROPE_SET = 64,
+	/** The reversals were trimmed by the buttons. Detail: the trim of that side, um */
+	LW_EVENT_TRIMMED = 65,
+	/** A trim by the buttons was refused */
+	LW_EVENT_TRIM_REFUSED = 66,
+	/**
+	 * The carriage went to where the rope goes on, and takes up direction and slope there.
+	 * Detail: position in um
+	 */
+	LW_EVENT_RESUMED = 67,
+	/**
+	 * The carriage began to take up a turning drum, after a restart in a launch. Detail: toward
+	 * plus 1, toward minus -1
+	 */
+	LW_EVENT_REACQUIRE_STARTED = 68,
+	/**
+	 * It was indexed on a limit switch, and follows. The rope may be laid wrong until an
+	 * indexing. Detail: how far it had been counted from its place, um
+	 */
+	LW_EVENT_REACQUIRE_DONE = 69,
+	/** The processor started without its external clock */
+	LW_EVENT_CLOCK_FALLBACK = 70,
+	/**
+	 * A bit of the active parameters or of the law in force had flipped in memory and was set
+	 * right; the law also tells a LOS. Detail: how often since power-up
+	 */
+	LW_EVENT_MEMORY_CORRECTED = 71,
+};
+
+/** What is wrong with the encoder */
+enum lw_encoder_fault {
+	/** Nothing */
+	LW_ENCODER_FAULT_NONE = 0,
+	/** Channel A stands still while channel B changes */
+	LW_ENCODER_FAULT_A_STILL = 1,
+	/** Channel B stands still while channel A changes */
+	LW_ENCODER_FAULT_B_STILL = 2,
+	/** Channel A does not follow channel B: a loose wire, or a drum that chatters */
+	LW_ENCODER_FAULT_A_FLICKERS = 3,
+	/** Channel B does not follow channel A: a loose wire, or a drum that chatters */
+	LW_ENCODER_FAULT_B_FLICKERS = 4,
+	/** Both channels change at once more often than encoder_illegal_permille */
+	LW_ENCODER_FAULT_ILLEGAL = 5,
+	/** The index pulses do not fit the edges: edges are lost, or too many */
+	LW_ENCODER_FAULT_INDEX_MISFIT = 6,
+	/**
+	 * The master says that the drum turns (drum_running), and no edge came for drum_watch_ms
+	 */
+	LW_ENCODER_FAULT_NO_EDGES = 7,
 };
 
 /** What the carriage follows the drum by */
@@ -575,6 +765,8 @@ enum lw_bench_command {
 	LW_BENCH_COMMAND_PROFILE_START = 3,
 	/** Restart the controller; the plant goes on */
 	LW_BENCH_COMMAND_POWER_CUT = 4,
+	/** The same, but what its memory keeps over a restart by the watchdog is kept */
+	LW_BENCH_COMMAND_RESTART = 10,
 	/** Move the carriage by bench_argument microsteps against the stepper */
 	LW_BENCH_COMMAND_SLIP = 5,
 	/** Swallow the next bench_argument encoder pulses */
@@ -585,6 +777,18 @@ enum lw_bench_command {
 	LW_BENCH_COMMAND_ILLEGAL_TRANSITIONS = 8,
 	/** Put the carriage at bench_argument micrometres by hand (stepper off) */
 	LW_BENCH_COMMAND_PLACE_CARRIAGE = 9,
+};
+
+/** Faults of a simulated encoder channel */
+enum lw_channel_fault {
+	/** Works */
+	LW_CHANNEL_FAULT_NONE = 0,
+	/** Always low */
+	LW_CHANNEL_FAULT_STUCK_LOW = 1,
+	/** Always high */
+	LW_CHANNEL_FAULT_STUCK_HIGH = 2,
+	/** A loose wire: low for a millisecond or two, then right for as long, at random */
+	LW_CHANNEL_FAULT_FLICKER = 3,
 };
 
 /** Faults of a simulated limit switch */
@@ -615,7 +819,7 @@ enum lw_trigger_fault {
 	LW_TRIGGER_FAULT_LOSE_PULSES = 3,
 };
 
-/** Discrete inputs, and bit numbers of lw_status.flags */
+/** Discrete inputs; bit n of lw_status.flags is n, of lw_status.flags_2 32 + n */
 enum lw_flag {
 	/** The position is known */
 	LW_FLAG_INDEXED = 0,
@@ -629,7 +833,10 @@ enum lw_flag {
 	LW_FLAG_DRUM_AT_REST = 4,
 	/** Stopped by a fault */
 	LW_FLAG_FAULTED = 5,
-	/** Any loss of synchronization since the last indexing: the rope may be laid wrong */
+	/**
+	 * Any loss of synchronization since the last indexing, also before a power cut: the rope
+	 * may be laid wrong
+	 */
 	LW_FLAG_LOS = 6,
 	/** LOS type 1+: reversal at plus entered, its switch did not trigger on the way */
 	LW_FLAG_LOS1_PLUS = 7,
@@ -687,43 +894,124 @@ enum lw_flag {
 	LW_FLAG_WATCHDOG_RESET = 30,
 	/** A cam table waits for the end of the cycle */
 	LW_FLAG_CAM_QUEUED = 31,
+	/** Real hardware with factory values that nobody has saved: they describe another winch */
+	LW_FLAG_SET_UNCONFIRMED = 32,
+	/**
+	 * Rope was laid while the carriage stood, also before a power cut: look at it, index, then
+	 * acknowledge_rope
+	 */
+	LW_FLAG_ROPE_LAID_STANDING = 33,
+	/**
+	 * The drum turned while the storage was written, so edges may be missing in rope_mm and
+	 * net_edges (until an indexing)
+	 */
+	LW_FLAG_ODOMETER_DOUBTFUL = 34,
+	/**
+	 * A limit switch says what the known position makes impossible: broken wire, stuck or moved
+	 * switch
+	 */
+	LW_FLAG_SWITCH_IMPLAUSIBLE = 35,
+	/** One encoder channel changes without the other: the drum may turn unseen. Not sticky */
+	LW_FLAG_ENCODER_DOUBTFUL = 36,
+	/**
+	 * The encoder does not tell the drum's motion: a loss of synchronization, sticky until an
+	 * indexing has succeeded
+	 */
+	LW_FLAG_ENCODER_FAULT = 37,
+	/**
+	 * The external clock of the processor is missing: it runs by its internal oscillator, which
+	 * may be a few percent off
+	 */
+	LW_FLAG_CLOCK_FALLBACK = 38,
+	/** Within the last 10 s bytes came on the line without a silence for more than a second */
+	LW_FLAG_LINE_BABBLE = 39,
+	/** Within the last 10 s the line gave back what was sent on it; that was dropped */
+	LW_FLAG_LINE_ECHO = 40,
+	/**
+	 * The metres of rope on the drum may be wrong: not told since the power-up, or edges were
+	 * lost. Give set_rope where they are known
+	 */
+	LW_FLAG_ROPE_DOUBTFUL = 41,
+	/**
+	 * The drum may have turned since it was kept where the rope goes on, or the carriage stood
+	 * elsewhere: not gone to. Look where the rope leaves the drum
+	 */
+	LW_FLAG_RESUME_DOUBTFUL = 42,
+	/**
+	 * After a restart in a launch a turning drum was taken up at an unknown place: a loss of
+	 * synchronization, until an indexing has succeeded
+	 */
+	LW_FLAG_REACQUIRED = 43,
 };
 
 /** Bit numbers of lw_status.launch_inhibit */
 enum lw_launch_inhibit_bit {
-	/** The state is not tracking */
+	/** The carriage does not follow the drum: the state says what to do */
 	LW_LAUNCH_INHIBIT_NOT_TRACKING = 0,
-	/** Synchronization was lost: index again */
+	/** Synchronization was lost: look at the rope first, then index */
 	LW_LAUNCH_INHIBIT_LOS = 1,
-	/** A fault stands */
+	/** A fault stands: remove its cause, then index */
 	LW_LAUNCH_INHIBIT_FAULT = 2,
-	/** A limit switch has a wiring fault */
+	/** A limit switch has a wiring fault: mend it, then clear_fault */
 	LW_LAUNCH_INHIBIT_WIRING = 3,
-	/** An overtravel switch is actuated */
+	/**
+	 * An overtravel switch is actuated: index moves the carriage off it, or check the switch
+	 * and its wire
+	 */
 	LW_LAUNCH_INHIBIT_OVERTRAVEL = 4,
-	/** The drum tripped the overspeed limit */
+	/** The drum tripped the overspeed limit: stop it, then index */
 	LW_LAUNCH_INHIBIT_OVERSPEED = 5,
-	/** The Modbus master is silent */
+	/** The Modbus master is silent: check the panel or PLC and its line */
 	LW_LAUNCH_INHIBIT_MASTER_LOST = 6,
-	/** A re-index correction is pending */
+	/**
+	 * A re-index correction waits for the sweep: turn the drum slowly until it is made, or
+	 * index
+	 */
 	LW_LAUNCH_INHIBIT_CORRECTION = 7,
-	/** The stepper driver reports an alarm */
+	/** The stepper driver reports an alarm: look at the driver, then index */
 	LW_LAUNCH_INHIBIT_STEPPER_ALARM = 8,
-	/** The motion profile is cam and its table cannot be followed; see cam_reason */
+	/**
+	 * The motion profile is cam and its table cannot be followed, see cam_reason: upload
+	 * another, or set motion_profile to screw
+	 */
 	LW_LAUNCH_INHIBIT_CAM = 9,
+	/**
+	 * The factory values are in force, which describe another winch: set the parameters of this
+	 * one, apply and save
+	 */
+	LW_LAUNCH_INHIBIT_SET_UNCONFIRMED = 10,
+	/**
+	 * Rope was laid while the carriage stood: look at the rope, index, then acknowledge_rope
+	 */
+	LW_LAUNCH_INHIBIT_ROPE_LAID_STANDING = 11,
+	/**
+	 * A limit switch says what the known position makes impossible: look at both switches and
+	 * their wires, then index
+	 */
+	LW_LAUNCH_INHIBIT_SWITCH_IMPLAUSIBLE = 12,
+	/**
+	 * The encoder's signals do not fit the drum, or did not since the last indexing: rest the
+	 * drum, check the encoder and its wires, look at the rope, then index
+	 */
+	LW_LAUNCH_INHIBIT_ENCODER = 13,
 };
 
 /* Protocol addresses. Discrete inputs: enum lw_flag is the address. */
 
 /* Coils. */
-#define LW_ADDRESS_INDEX       0
-#define LW_ADDRESS_STOP        1
-#define LW_ADDRESS_CLEAR_FAULT 2
-#define LW_ADDRESS_APPLY       3
-#define LW_ADDRESS_REVERT      4
-#define LW_ADDRESS_SAVE        5
-#define LW_ADDRESS_JOG_PLUS    6
-#define LW_ADDRESS_JOG_MINUS   7
+#define LW_ADDRESS_INDEX            0
+#define LW_ADDRESS_STOP             1
+#define LW_ADDRESS_CLEAR_FAULT      2
+#define LW_ADDRESS_APPLY            3
+#define LW_ADDRESS_REVERT           4
+#define LW_ADDRESS_SAVE             5
+#define LW_ADDRESS_JOG_PLUS         6
+#define LW_ADDRESS_JOG_MINUS        7
+#define LW_ADDRESS_ACKNOWLEDGE_ROPE 8
+#define LW_ADDRESS_SET_ROPE         9
+#define LW_ADDRESS_TRIM_EARLY       10
+#define LW_ADDRESS_TRIM_LATE        11
+#define LW_ADDRESS_REACQUIRE        12
 
 /* Block setpoints: holding registers. */
 #define LW_ADDRESS_COMMAND         0
@@ -731,73 +1019,89 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_JOG             2
 #define LW_ADDRESS_TRIM_PLUS_UM    3
 #define LW_ADDRESS_TRIM_MINUS_UM   4
+#define LW_ADDRESS_DRUM_RUNNING    5
+#define LW_ADDRESS_SET_ROPE_MM     6
 #define LW_ADDRESS_UNLOCK          10
 #define LW_ADDRESS_CAM_PHASE_EDGES 630
 
 /* Block parameters: holding registers. */
-#define LW_ADDRESS_ENCODER_PULSES_PER_REV        100
-#define LW_ADDRESS_ENCODER_EDGES_PER_PULSE       101
-#define LW_ADDRESS_ENCODER_RATIO_NUMERATOR       102
-#define LW_ADDRESS_ENCODER_RATIO_DENOMINATOR     103
-#define LW_ADDRESS_ENCODER_INVERT_A              104
-#define LW_ADDRESS_ENCODER_INVERT_B              105
-#define LW_ADDRESS_DRUM_DIRECTION_INVERT         106
-#define LW_ADDRESS_ROPE_PER_DRUM_REV_UM          107
-#define LW_ADDRESS_SCREW_LEAD_UM                 110
-#define LW_ADDRESS_MICROSTEPS_PER_REV            112
-#define LW_ADDRESS_CARRIAGE_DIRECTION_INVERT     113
-#define LW_ADDRESS_PITCH_UM                      114
-#define LW_ADDRESS_OVERSHOOT_UM                  116
-#define LW_ADDRESS_SLOPE_TOLERANCE_PPM           118
-#define LW_ADDRESS_REVERSAL_PLUS_UM              120
-#define LW_ADDRESS_REVERSAL_MINUS_UM             122
-#define LW_ADDRESS_FLANGE_PLUS_UM                124
-#define LW_ADDRESS_FLANGE_MINUS_UM               126
-#define LW_ADDRESS_SWITCH_PLUS_UM                128
-#define LW_ADDRESS_SWITCH_MINUS_UM               130
-#define LW_ADDRESS_SWITCH_TOLERANCE_UM           132
-#define LW_ADDRESS_SWITCH_HYSTERESIS_UM          133
-#define LW_ADDRESS_SWITCH_CONTACTS               134
-#define LW_ADDRESS_SWITCH_TRANSIT_MS             135
-#define LW_ADDRESS_SWITCH_DEBOUNCE_MS            136
-#define LW_ADDRESS_TRAVEL_UM                     137
-#define LW_ADDRESS_INDEX_SWITCH                  140
-#define LW_ADDRESS_INDEX_RATE_EDGES_PER_S        141
-#define LW_ADDRESS_PARK_AT                       142
-#define LW_ADDRESS_PARK_POSITION_UM              143
-#define LW_ADDRESS_SPAN_TOLERANCE_UM             145
-#define LW_ADDRESS_HANDOVER_DIRECTION            146
-#define LW_ADDRESS_REST_EDGES_PER_S              147
-#define LW_ADDRESS_REST_TIME_MS                  148
-#define LW_ADDRESS_CENTRE_POSITION_UM            149
-#define LW_ADDRESS_JOG_RATE_EDGES_PER_S          151
-#define LW_ADDRESS_JOG_HOLD_MS                   152
-#define LW_ADDRESS_LOS_RECOVERIES_MAX            160
-#define LW_ADDRESS_OVERSPEED_WARNING_EDGES_PER_S 161
-#define LW_ADDRESS_OVERSPEED_TRIP_EDGES_PER_S    163
-#define LW_ADDRESS_MASTER_TIMEOUT_MS             165
-#define LW_ADDRESS_DWELL_PLUS_MILLIREV           166
-#define LW_ADDRESS_DWELL_MINUS_MILLIREV          167
-#define LW_ADDRESS_EXPERT_MODE                   170
-#define LW_ADDRESS_RAW_KA                        171
-#define LW_ADDRESS_RAW_NR                        172
-#define LW_ADDRESS_RAW_REVERSAL_PLUS_USTEPS      173
-#define LW_ADDRESS_RAW_REVERSAL_MINUS_USTEPS     174
-#define LW_ADDRESS_UNIT_ID                       180
-#define LW_ADDRESS_BAUD_RATE                     181
-#define LW_ADDRESS_LINE_FORMAT                   183
-#define LW_ADDRESS_LOCK_CODE                     184
-#define LW_ADDRESS_LOCK_TIMEOUT_S                186
-#define LW_ADDRESS_LINE_CONFIRM_S                187
-#define LW_ADDRESS_MOTION_PROFILE                600
-#define LW_ADDRESS_CAM_START                     601
-#define LW_ADDRESS_CAM_MASTER_EDGES              602
-#define LW_ADDRESS_CAM_MASTER_UNITS              603
-#define LW_ADDRESS_CAM_SLAVE_USTEPS              604
-#define LW_ADDRESS_CAM_SLAVE_UNITS               605
-#define LW_ADDRESS_CAM_RAMP_DIVISOR              606
-#define LW_ADDRESS_CAM_AXIS                      607
-#define LW_ADDRESS_CAM_STEPS_PER_S_MAX           608
+#define LW_ADDRESS_ENCODER_PULSES_PER_REV          100
+#define LW_ADDRESS_ENCODER_EDGES_PER_PULSE         101
+#define LW_ADDRESS_ENCODER_RATIO_NUMERATOR         102
+#define LW_ADDRESS_ENCODER_RATIO_DENOMINATOR       103
+#define LW_ADDRESS_ENCODER_INVERT_A                104
+#define LW_ADDRESS_ENCODER_INVERT_B                105
+#define LW_ADDRESS_DRUM_DIRECTION_INVERT           106
+#define LW_ADDRESS_ROPE_PER_DRUM_REV_UM            107
+#define LW_ADDRESS_SCREW_LEAD_UM                   110
+#define LW_ADDRESS_MICROSTEPS_PER_REV              112
+#define LW_ADDRESS_CARRIAGE_DIRECTION_INVERT       113
+#define LW_ADDRESS_PITCH_UM                        114
+#define LW_ADDRESS_OVERSHOOT_UM                    116
+#define LW_ADDRESS_SLOPE_TOLERANCE_PPM             118
+#define LW_ADDRESS_REVERSAL_PLUS_UM                120
+#define LW_ADDRESS_REVERSAL_MINUS_UM               122
+#define LW_ADDRESS_FLANGE_PLUS_UM                  124
+#define LW_ADDRESS_FLANGE_MINUS_UM                 126
+#define LW_ADDRESS_SWITCH_PLUS_UM                  128
+#define LW_ADDRESS_SWITCH_MINUS_UM                 130
+#define LW_ADDRESS_SWITCH_TOLERANCE_UM             132
+#define LW_ADDRESS_SWITCH_HYSTERESIS_UM            133
+#define LW_ADDRESS_SWITCH_CONTACTS                 134
+#define LW_ADDRESS_SWITCH_TRANSIT_MS               135
+#define LW_ADDRESS_SWITCH_DEBOUNCE_MS              136
+#define LW_ADDRESS_TRAVEL_UM                       137
+#define LW_ADDRESS_SWITCH_DELAY_US                 139
+#define LW_ADDRESS_INDEX_SWITCH                    140
+#define LW_ADDRESS_INDEX_RATE_EDGES_PER_S          141
+#define LW_ADDRESS_PARK_AT                         142
+#define LW_ADDRESS_PARK_POSITION_UM                143
+#define LW_ADDRESS_SPAN_TOLERANCE_UM               145
+#define LW_ADDRESS_HANDOVER_DIRECTION              146
+#define LW_ADDRESS_REST_EDGES_PER_S                147
+#define LW_ADDRESS_REST_TIME_MS                    148
+#define LW_ADDRESS_CENTRE_POSITION_UM              149
+#define LW_ADDRESS_JOG_RATE_EDGES_PER_S            151
+#define LW_ADDRESS_JOG_HOLD_MS                     152
+#define LW_ADDRESS_LOS_RECOVERIES_MAX              160
+#define LW_ADDRESS_OVERSPEED_WARNING_EDGES_PER_S   161
+#define LW_ADDRESS_OVERSPEED_TRIP_EDGES_PER_S      163
+#define LW_ADDRESS_MASTER_TIMEOUT_MS               165
+#define LW_ADDRESS_DWELL_PLUS_MILLIREV             166
+#define LW_ADDRESS_DWELL_MINUS_MILLIREV            167
+#define LW_ADDRESS_BREAKER_MILLIREV                168
+#define LW_ADDRESS_BREAKER_CYCLES                  169
+#define LW_ADDRESS_EXPERT_MODE                     170
+#define LW_ADDRESS_RAW_KA                          171
+#define LW_ADDRESS_RAW_NR                          172
+#define LW_ADDRESS_RAW_REVERSAL_PLUS_USTEPS        173
+#define LW_ADDRESS_RAW_REVERSAL_MINUS_USTEPS       174
+#define LW_ADDRESS_UNIT_ID                         180
+#define LW_ADDRESS_BAUD_RATE                       181
+#define LW_ADDRESS_LINE_FORMAT                     183
+#define LW_ADDRESS_LOCK_CODE                       184
+#define LW_ADDRESS_LOCK_TIMEOUT_S                  186
+#define LW_ADDRESS_LINE_CONFIRM_S                  187
+#define LW_ADDRESS_ENCODER_WATCH_TRANSITIONS_PER_S 190
+#define LW_ADDRESS_ENCODER_WATCH_MS                192
+#define LW_ADDRESS_ENCODER_ILLEGAL_PERMILLE        193
+#define LW_ADDRESS_DRUM_WATCH_MS                   194
+#define LW_ADDRESS_STANDING_TURNS_PERMILLE         199
+#define LW_ADDRESS_ROPE_DIAMETER_UM                200
+#define LW_ADDRESS_DRUM_CORE_DIAMETER_UM           201
+#define LW_ADDRESS_ROPE_PACKING_PERMILLE           203
+#define LW_ADDRESS_TRIM_STEP_UM                    204
+#define LW_ADDRESS_RESUME                          205
+#define LW_ADDRESS_REACQUIRE_AFTER_RESTART         206
+#define LW_ADDRESS_MOTION_PROFILE                  600
+#define LW_ADDRESS_CAM_START                       601
+#define LW_ADDRESS_CAM_MASTER_EDGES                602
+#define LW_ADDRESS_CAM_MASTER_UNITS                603
+#define LW_ADDRESS_CAM_SLAVE_USTEPS                604
+#define LW_ADDRESS_CAM_SLAVE_UNITS                 605
+#define LW_ADDRESS_CAM_RAMP_DIVISOR                606
+#define LW_ADDRESS_CAM_AXIS                        607
+#define LW_ADDRESS_CAM_STEPS_PER_S_MAX             608
 
 /* Added to an address of block parameters: the active set, as input registers. */
 #define LW_MAP_ACTIVE_ADDRESS_OFFSET 1000
@@ -812,6 +1116,8 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_VERSION_MINOR               4
 #define LW_ADDRESS_VERSION_PATCH               5
 #define LW_ADDRESS_HOST                        6
+#define LW_ADDRESS_IMAGE_HASH_HIGH             7
+#define LW_ADDRESS_IMAGE_HASH_LOW              9
 #define LW_ADDRESS_STATE                       100
 #define LW_ADDRESS_ACTIVE_MODE                 101
 #define LW_ADDRESS_FAULT                       102
@@ -829,6 +1135,13 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_UPTIME_MS                   127
 #define LW_ADDRESS_LOS_RECOVERIES              129
 #define LW_ADDRESS_SPAN_ERROR_UM               130
+#define LW_ADDRESS_FLAGS_2                     132
+#define LW_ADDRESS_ROPE_ON_DRUM_MM             134
+#define LW_ADDRESS_ROPE_OUT_MM                 136
+#define LW_ADDRESS_ROPE_LAYER                  138
+#define LW_ADDRESS_ROPE_RADIUS_UM              139
+#define LW_ADDRESS_RESUME_POSITION_UM          141
+#define LW_ADDRESS_RESUME_DIRECTION            143
 #define LW_ADDRESS_LOS1_PLUS_COUNT             200
 #define LW_ADDRESS_LOS1_PLUS_POSITION_UM       201
 #define LW_ADDRESS_LOS1_PLUS_TIME_MS           203
@@ -870,6 +1183,23 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_STACK_FREE_MODBUS_BYTES     352
 #define LW_ADDRESS_STACK_FREE_STORAGE_BYTES    353
 #define LW_ADDRESS_STACK_FREE_INTERRUPTS_BYTES 354
+#define LW_ADDRESS_ENCODER_FAULT_KIND          360
+#define LW_ADDRESS_ENCODER_FAULT_COUNT         361
+#define LW_ADDRESS_ENCODER_FAULT_POSITION_UM   362
+#define LW_ADDRESS_ENCODER_FAULT_TIME_MS       364
+#define LW_ADDRESS_ENCODER_DOUBTS              366
+#define LW_ADDRESS_ENCODER_MISFIT_EDGES        367
+#define LW_ADDRESS_MEMORY_CORRECTIONS          369
+#define LW_ADDRESS_LINE_BABBLES                380
+#define LW_ADDRESS_LINE_ECHOES                 382
+#define LW_ADDRESS_LATE_REQUESTS               384
+#define LW_ADDRESS_FOREIGN_ANSWERS             386
+#define LW_ADDRESS_EVENTS_SKIPPED              388
+#define LW_ADDRESS_ROPE_STANDING_MILLIREV      390
+#define LW_ADDRESS_ROPE_STANDING_POSITION_UM   392
+#define LW_ADDRESS_ROPE_STANDING_TIME_MS       394
+#define LW_ADDRESS_ROPE_STANDING_PLACE_KNOWN   396
+#define LW_ADDRESS_LOOK_BEFORE_POWER_UP        397
 #define LW_ADDRESS_COMMAND_SEQUENCE            400
 #define LW_ADDRESS_COMMAND_CODE                401
 #define LW_ADDRESS_COMMAND_RESULT              402
@@ -894,6 +1224,9 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_EDGES_PER_1000_DRUM_REVS    514
 #define LW_ADDRESS_DWELL_PLUS_EDGES            516
 #define LW_ADDRESS_DWELL_MINUS_EDGES           518
+#define LW_ADDRESS_BREAKER_EDGES               520
+#define LW_ADDRESS_BREAKER_CYCLE_PLUS          522
+#define LW_ADDRESS_BREAKER_CYCLE_MINUS         523
 #define LW_ADDRESS_CAM_BANK_0_STATE            600
 #define LW_ADDRESS_CAM_BANK_1_STATE            601
 #define LW_ADDRESS_CAM_REASON                  602
@@ -914,6 +1247,8 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_CAM_WAITING                 626
 #define LW_ADDRESS_SLOT_4                      627
 #define LW_ADDRESS_SLOT_5                      628
+#define LW_ADDRESS_SLOT_6                      629
+#define LW_ADDRESS_SLOT_7                      630
 
 /* Block cam_upload: holding registers. */
 #define LW_ADDRESS_CAM_UPLOAD_NAME          3000
@@ -945,6 +1280,8 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_BENCH_STEPPER_ALARM                    61462
 #define LW_ADDRESS_BENCH_HANG                             61463
 #define LW_ADDRESS_BENCH_RESTART                          61464
+#define LW_ADDRESS_BENCH_TRIM_EARLY                       61465
+#define LW_ADDRESS_BENCH_TRIM_LATE                        61466
 #define LW_ADDRESS_BENCH_RESULT                           61469
 #define LW_ADDRESS_BENCH_CARRIAGE_UM                      61470
 #define LW_ADDRESS_BENCH_CARRIAGE_MM_PER_S                61472
@@ -956,10 +1293,18 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_BENCH_PROFILE_RUNNING                  61485
 #define LW_ADDRESS_BENCH_TIME_MS                          61486
 #define LW_ADDRESS_BENCH_PROFILE                          61500
+#define LW_ADDRESS_BENCH_ENCODER_A_FAULT                  61620
+#define LW_ADDRESS_BENCH_ENCODER_B_FAULT                  61621
+#define LW_ADDRESS_BENCH_INDEX_PULSES                     61622
+#define LW_ADDRESS_BENCH_ROPE_LAYER_UM                    61623
+#define LW_ADDRESS_BENCH_ROPE_LAYER_MILLITURNS            61624
+#define LW_ADDRESS_BENCH_ROPE_CORE_UM                     61626
+#define LW_ADDRESS_BENCH_ROPE_MM                          61628
+#define LW_ADDRESS_BENCH_SWITCH_LATE_US                   61630
 
 /**
  * Commands and set-points, effective at once, never stored. One member for each point, in the
- * memory type of lw/point.h.
+ * memory type of lw/map/point.h.
  */
 struct lw_setpoints {
 	/** Writing a code runs the command; reads the last one (enum lw_command) */
@@ -972,6 +1317,13 @@ struct lw_setpoints {
 	int32_t trim_plus_um;
 	/** Live shift of reversal_minus, applied in the sweep only [um] */
 	int32_t trim_minus_um;
+	/** 1: the master says that the winch turns the drum; see drum_watch_ms */
+	int32_t drum_running;
+	/**
+	 * What the command set_rope tells: so much rope is on the drum; -1: nothing was written
+	 * [mm]
+	 */
+	int32_t set_rope_mm;
 	/**
 	 * Writing lock_code opens the write lock for lock_timeout_s, writing 0 closes it; reads 0
 	 */
@@ -982,7 +1334,7 @@ struct lw_setpoints {
 
 /**
  * Parameters (staged). APPLY makes them active, SAVE stores the active set. One member for each
- * point, in the memory type of lw/point.h.
+ * point, in the memory type of lw/map/point.h.
  */
 struct lw_params {
 	/** Encoder pulses per revolution of its shaft [pulses] */
@@ -1031,12 +1383,20 @@ struct lw_params {
 	int32_t switch_hysteresis_um;
 	/** How the limit switches are wired (enum lw_switch_contacts) */
 	int32_t switch_contacts;
-	/** Both contacts open longer than this is a wiring fault [ms] */
+	/**
+	 * Both contacts of a pair open, or a single contact not at rest, for longer than this is a
+	 * wiring fault [ms]
+	 */
 	int32_t switch_transit_ms;
 	/** Debounce time of a single contact [ms] */
 	int32_t switch_debounce_ms;
 	/** Carriage travel between the mechanical end stops [um] */
 	uint32_t travel_um;
+	/**
+	 * How late a limit switch tells that it was reached; `levelwind index --rates` measures it
+	 * (0: at once) [us]
+	 */
+	int32_t switch_delay_us;
 	/** Which limit switch is the indexing switch (enum lw_side) */
 	int32_t index_switch;
 	/** Rate of the simulated edges for indexing and centring [edges/s] */
@@ -1074,6 +1434,13 @@ struct lw_params {
 	int32_t dwell_plus_millirev;
 	/** Dwell at the far point of the minus reversal [1/1000 drum rev] */
 	int32_t dwell_minus_millirev;
+	/**
+	 * Ribbon breaker: both dwells grow by up to this much and shrink again, from reversal to
+	 * reversal of their side [1/1000 drum rev]
+	 */
+	int32_t breaker_millirev;
+	/** Ribbon breaker: it goes up and down once in so many double traverses (0: off) */
+	int32_t breaker_cycles;
 	/** 1: the four raw_ values replace pitch, overshoot and reversal points */
 	int32_t expert_mode;
 	/** Slope change per edge in a reversal [usteps/65536] */
@@ -1102,6 +1469,53 @@ struct lw_params {
 	int32_t lock_timeout_s;
 	/** How long try_line waits for a valid request [s] */
 	int32_t line_confirm_s;
+	/**
+	 * One encoder channel that changes faster than this without the other makes the encoder
+	 * doubtful [transitions/s]
+	 */
+	uint32_t encoder_watch_transitions_per_s;
+	/** An encoder that is doubtful for this long has a fault [ms] */
+	int32_t encoder_watch_ms;
+	/**
+	 * Of 1000 transitions so many may change both channels at once, before the encoder has a
+	 * fault (1000: any) [1/1000]
+	 */
+	int32_t encoder_illegal_permille;
+	/**
+	 * No edge for this long while drum_running is 1: the encoder has a fault (0: not watched)
+	 * [ms]
+	 */
+	int32_t drum_watch_ms;
+	/**
+	 * Rope hauled in while the carriage stands sets rope_laid_standing from so many drum turns
+	 * on (0: not watched) [1/1000 drum rev]
+	 */
+	int32_t standing_turns_permille;
+	/** Diameter of the rope (0: not known) [um] */
+	int32_t rope_diameter_um;
+	/**
+	 * Diameter of the bare drum (0: not known). With rope_diameter_um and
+	 * rope_packing_permille, metres of rope follow the growing layers [um]
+	 */
+	uint32_t drum_core_diameter_um;
+	/**
+	 * How much of the room on the drum the rope fills, fitted from two known lengths; about 600
+	 * to 900 (0: not known) [1/1000]
+	 */
+	int32_t rope_packing_permille;
+	/** How far trim_early and trim_late shift a reversal point [um] */
+	int32_t trim_step_um;
+	/**
+	 * 1: where the drum came to rest is kept, also over a power-off, and after an indexing the
+	 * carriage first goes there and takes up direction and slope; 0: it begins where the
+	 * indexing ends
+	 */
+	int32_t resume;
+	/**
+	 * 1: where the controller has restarted in a launch (memory kept, the drum still turns), it
+	 * gives reacquire by itself. THE CARRIAGE MOVES UNASKED
+	 */
+	int32_t reacquire_after_restart;
 	/** What the carriage follows the drum by (enum lw_motion_profile) */
 	int32_t motion_profile;
 	/** How a cam begins at a hand-over (enum lw_cam_start) */
@@ -1127,7 +1541,7 @@ struct lw_params {
 
 /**
  * Identity, live status, LOS records, counters, command results and derived values. One member for
- * each point, in the memory type of lw/point.h.
+ * each point, in the memory type of lw/map/point.h.
  */
 struct lw_status {
 	/** Always 0x12345678: the master's word order is right when it reads so */
@@ -1142,6 +1556,13 @@ struct lw_status {
 	int32_t version_patch;
 	/** What runs the core (enum lw_host) */
 	int32_t host;
+	/**
+	 * What runs: bytes 0 to 3 of the SHA-256 of zephyr.bin, worked out over the flash at power-
+	 * up (0, and so the low half: not known, as on the simulators)
+	 */
+	uint32_t image_hash_high;
+	/** Bytes 4 to 7 of it */
+	uint32_t image_hash_low;
 	/** What the controller is doing (enum lw_state) */
 	int32_t state;
 	/** Mode in force (the requested one waits for the drum to rest) (enum lw_mode) */
@@ -1149,7 +1570,7 @@ struct lw_status {
 	/** Why the controller stopped (enum lw_fault) */
 	int32_t fault;
 	/**
-	 * All discrete inputs in one pair, bit number = discrete input address (bits: enum lw_flag)
+	 * The first 32 discrete inputs, bit number = discrete input address (bits: enum lw_flag)
 	 */
 	uint32_t flags;
 	/**
@@ -1158,7 +1579,7 @@ struct lw_status {
 	int32_t launch_inhibit;
 	/** Carriage position [um] */
 	int32_t position_um;
-	/** Carriage position, whole microsteps [usteps] */
+	/** Carriage position, whole microsteps; a free axis goes on modulo 65536 [usteps] */
 	int32_t position_usteps;
 	/** Carriage position, Q16.16 [usteps/65536] */
 	int32_t m;
@@ -1166,43 +1587,69 @@ struct lw_status {
 	int32_t u;
 	/** Drum speed, positive hauls rope in [edges/s] */
 	int32_t drum_speed_edges_per_s;
-	/** Rope speed, positive hauls in [mm/s] */
+	/** Rope speed, positive hauls in; by rope_radius_um where that is known [mm/s] */
 	int32_t rope_speed_mm_per_s;
-	/** Rope hauled in (positive) or paid out since power-up [mm] */
+	/**
+	 * Rope hauled in (positive) or paid out since power-up, by the growing layers where the
+	 * rope on the drum is known; stands still at its limits, 2147 km [mm]
+	 */
 	int32_t rope_mm;
 	/** Odometer: net drum edges since power-up [edges] */
 	int64_t net_edges;
 	/** Net edges followed since the last hand-over [edges] */
 	int64_t pattern_edges;
-	/** Time since power-up [ms] */
+	/** Time since power-up; begins anew at 0 after 49.7 days [ms] */
 	uint32_t uptime_ms;
 	/** Re-indexings after a LOS in this launch */
 	int32_t los_recoveries;
 	/** Last indexing: found minus calibrated position of the other switch [um] */
 	int32_t span_error_um;
+	/**
+	 * The discrete inputs from 32 on, bit number = discrete input address - 32 (bits: enum
+	 * lw_flag)
+	 */
+	uint32_t flags_2;
+	/** Rope on the drum; 0 until set_rope. It may be wrong while rope_doubtful is on [mm] */
+	int32_t rope_on_drum_mm;
+	/** Rope wound off since set_rope: what is out, if it was told with all rope in [mm] */
+	int32_t rope_out_mm;
+	/** Layers of rope on the drum, begun ones too; 0: bare, or not known */
+	int32_t rope_layer;
+	/** Radius of what is wound, from the drum's axis; 0: not known [um] */
+	uint32_t rope_radius_um;
+	/**
+	 * Where the rope goes on: carriage position when the drum came to rest, also before a
+	 * power-off; 0 while resume_direction is 0 [um]
+	 */
+	int32_t resume_position_um;
+	/**
+	 * Direction of the carriage there while the drum hauls in: +1 or -1; 0: not known, or
+	 * resume is 0
+	 */
+	int32_t resume_direction;
 	/** LOS type 1+ since power-up */
 	int32_t los1_plus_count;
 	/** Position of the first since the last indexing [um] */
 	int32_t los1_plus_position_um;
-	/** Its time since power-up [ms] */
+	/** Its time since power-up, of that power-up [ms] */
 	uint32_t los1_plus_time_ms;
 	/** LOS type 1- since power-up */
 	int32_t los1_minus_count;
 	/** Position of the first since the last indexing [um] */
 	int32_t los1_minus_position_um;
-	/** Its time since power-up [ms] */
+	/** Its time since power-up, of that power-up [ms] */
 	uint32_t los1_minus_time_ms;
 	/** LOS type 2+ since power-up */
 	int32_t los2_plus_count;
 	/** Position of the first since the last indexing [um] */
 	int32_t los2_plus_position_um;
-	/** Its time since power-up [ms] */
+	/** Its time since power-up, of that power-up [ms] */
 	uint32_t los2_plus_time_ms;
 	/** LOS type 2- since power-up */
 	int32_t los2_minus_count;
 	/** Position of the first since the last indexing [um] */
 	int32_t los2_minus_position_um;
-	/** Its time since power-up [ms] */
+	/** Its time since power-up, of that power-up [ms] */
 	uint32_t los2_minus_time_ms;
 	/** Encoder transitions of both channels at once since power-up */
 	uint32_t illegal_transitions;
@@ -1232,7 +1679,7 @@ struct lw_status {
 	uint32_t log_sequence;
 	/** Event log: events that can be read */
 	int32_t log_count;
-	/** Event log: events that are not stored yet; they wait for the end of the tracking */
+	/** Event log: events that are not stored yet; they wait until the drum rests */
 	int32_t log_unsaved;
 	/** Sequence number of the stored parameter set in use, 0 if there is none */
 	uint32_t record_sequence;
@@ -1270,6 +1717,61 @@ struct lw_status {
 	int32_t stack_free_storage_bytes;
 	/** Stack that the interrupts have never used (0: not measured) [bytes] */
 	int32_t stack_free_interrupts_bytes;
+	/**
+	 * What was wrong with the encoder first since the last indexing (and since the power-up)
+	 * (enum lw_encoder_fault)
+	 */
+	int32_t encoder_fault_kind;
+	/** Encoder faults since power-up */
+	int32_t encoder_fault_count;
+	/** Position of the first since the last indexing [um] */
+	int32_t encoder_fault_position_um;
+	/** Its time since power-up [ms] */
+	uint32_t encoder_fault_time_ms;
+	/** How often the encoder became doubtful since power-up */
+	int32_t encoder_doubts;
+	/**
+	 * By how many edges the index pulses contradict the count, net, since the last indexing
+	 * [edges]
+	 */
+	int32_t encoder_misfit_edges;
+	/**
+	 * Bits of the active parameters and of the law in force that had flipped in memory and were
+	 * set right since power-up
+	 */
+	int32_t memory_corrections;
+	/**
+	 * Times that bytes came on the line without a silence for more than a second, since power-
+	 * up
+	 */
+	uint32_t line_babbles;
+	/** Own answers that the line gave back, dropped */
+	uint32_t line_echoes;
+	/** Requests that had waited too long and were dropped */
+	uint32_t late_requests;
+	/**
+	 * Answers of another device as this unit, dropped: two devices have this unit_id, or an
+	 * echo comes late
+	 */
+	uint32_t foreign_answers;
+	/** Events that were not logged because their cause comes and goes too often */
+	uint32_t events_skipped;
+	/**
+	 * Drum turns of rope laid while the carriage stood, since the last acknowledgement [1/1000
+	 * drum rev]
+	 */
+	uint32_t rope_standing_millirev;
+	/** Where the carriage stood at the first of them [um] */
+	int32_t rope_standing_position_um;
+	/** When, since power-up, of that power-up [ms] */
+	uint32_t rope_standing_time_ms;
+	/** 1: that position was known; 0: the position had been unknown before */
+	int32_t rope_standing_place_known;
+	/**
+	 * What needs a look at the rope since before this power-up: 1 LOS 1+, 2 LOS 1-, 4 LOS 2+, 8
+	 * LOS 2-, 16 rope laid while the carriage stood, 32 encoder fault, 64 re-acquired
+	 */
+	int32_t look_before_power_up;
 	/** Counts every command, also refused ones */
 	int32_t command_sequence;
 	/** The last command (enum lw_command) */
@@ -1318,6 +1820,15 @@ struct lw_status {
 	uint32_t dwell_plus_edges;
 	/** Dwell at the minus side [edges] */
 	uint32_t dwell_minus_edges;
+	/** Ribbon breaker: most that it adds to a dwell [edges] */
+	uint32_t breaker_edges;
+	/**
+	 * Ribbon breaker: far points passed at plus since the hand-over after the last indexing,
+	 * net, modulo breaker_cycles
+	 */
+	int32_t breaker_cycle_plus;
+	/** Ribbon breaker: those at minus */
+	int32_t breaker_cycle_minus;
 	/** What the first bank of cam tables holds (enum lw_cam_bank_state) */
 	int32_t cam_bank_0_state;
 	/** What the second bank of cam tables holds (enum lw_cam_bank_state) */
@@ -1361,11 +1872,15 @@ struct lw_status {
 	int32_t slot_4;
 	/** Storage: second slot of cam tables (enum lw_slot_state) */
 	int32_t slot_5;
+	/** Storage: first slot of what needs a look at the rope (enum lw_slot_state) */
+	int32_t slot_6;
+	/** Storage: second slot of what needs a look at the rope (enum lw_slot_state) */
+	int32_t slot_7;
 };
 
 /**
  * The cam bank that is not in force, to write and to read. The same as the file record interface.
- * One member for each point, in the memory type of lw/point.h.
+ * One member for each point, in the memory type of lw/map/point.h.
  */
 struct lw_cam_upload {
 	/** Name, two characters of ASCII in a register */
@@ -1388,7 +1903,7 @@ struct lw_cam_upload {
 
 /**
  * The simulated plant (only in builds that have one). One member for each point, in the memory type
- * of lw/point.h.
+ * of lw/map/point.h.
  */
 struct lw_bench {
 	/** Argument of bench_command; may stand in the same request */
@@ -1432,6 +1947,10 @@ struct lw_bench {
 	int32_t bench_hang;
 	/** The last restart by the watchdog, as the stepper saw it (enum lw_bench_restart) */
 	int32_t bench_restart;
+	/** 1 presses the button for early reversal */
+	int32_t bench_trim_early;
+	/** 1 presses the button for late reversal */
+	int32_t bench_trim_late;
 	/**
 	 * 0: the last bench command or armed fault was accepted; else the POSIX error number why
 	 * not
@@ -1457,9 +1976,31 @@ struct lw_bench {
 	uint32_t bench_time_ms;
 	/** Window of 30 profile points: time in ms, drum speed in millirpm, alternating */
 	int32_t bench_profile[60];
+	/** Fault of encoder channel A (enum lw_channel_fault) */
+	int32_t bench_encoder_a_fault;
+	/** Fault of encoder channel B (enum lw_channel_fault) */
+	int32_t bench_encoder_b_fault;
+	/** 0: the encoder's index channel is not wired */
+	int32_t bench_index_pulses;
+	/**
+	 * How much each layer of rope makes the drum thicker (its radius); 0: the drum stays as it
+	 * is [um]
+	 */
+	int32_t bench_rope_layer_um;
+	/** Turns of a layer [1/1000 turn] */
+	uint32_t bench_rope_layer_milliturns;
+	/** Diameter of the bare drum [um] */
+	uint32_t bench_rope_core_um;
+	/** Rope that is really on the drum, beginning bare [mm] */
+	int32_t bench_rope_mm;
+	/**
+	 * How late the limit switches trigger and release, before the millisecond that a contact
+	 * travels [us]
+	 */
+	int32_t bench_switch_late_us;
 };
 
-#define LW_MAP_SETPOINTS_COUNT 7
+#define LW_MAP_SETPOINTS_COUNT 9
 
 /**
  * Commands and set-points, effective at once, never stored: holding registers, offsets in struct
@@ -1467,7 +2008,7 @@ struct lw_bench {
  */
 extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
 
-#define LW_MAP_PARAMS_COUNT 63
+#define LW_MAP_PARAMS_COUNT 77
 
 /**
  * Parameters (staged). APPLY makes them active, SAVE stores the active set: holding registers,
@@ -1475,7 +2016,7 @@ extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
  */
 extern const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT];
 
-#define LW_MAP_STATUS_COUNT 108
+#define LW_MAP_STATUS_COUNT 139
 
 /**
  * Identity, live status, LOS records, counters, command results and derived values: input
@@ -1491,19 +2032,19 @@ extern const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT];
  */
 extern const struct lw_point lw_map_cam_upload[LW_MAP_CAM_UPLOAD_COUNT];
 
-#define LW_MAP_BENCH_COUNT 30
+#define LW_MAP_BENCH_COUNT 40
 
 /**
  * The simulated plant (only in builds that have one): holding registers, offsets in struct lw_bench
  */
 extern const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT];
 
-#define LW_MAP_COILS_COUNT 8
+#define LW_MAP_COILS_COUNT 13
 
 /** Coils, indexed by address */
 extern const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT];
 
-#define LW_MAP_DISCRETES_COUNT 32
+#define LW_MAP_DISCRETES_COUNT 44
 
 /** Discrete inputs, indexed by address */
 extern const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT];

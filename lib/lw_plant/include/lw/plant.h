@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * @brief The machine outside of the controller's pins: drum, encoder, carriage, switches, faults.
@@ -65,6 +66,7 @@ enum lw_plant_changed {
 	LW_PLANT_OVERTRAVEL_MINUS = 1 << 5,
 	LW_PLANT_ENCODER_INDEX = 1 << 6,
 	LW_PLANT_STEPPER_ALARM = 1 << 7,
+	LW_PLANT_TRIM_BUTTONS = 1 << 8,
 };
 
 /** Physical constants. Fill with lw_plant_config_default(), then change what differs. */
@@ -132,6 +134,17 @@ struct lw_plant_pins {
 	} limit[LW_PLANT_SIDES];
 	/** Overtravel switches, true when actuated. */
 	bool overtravel[LW_PLANT_SIDES];
+	/** Buttons for early and late reversal, true when pressed. */
+	bool trim_buttons[2];
+};
+
+/** The rope on the drum: layer on layer, each of which makes the drum thicker. */
+struct lw_plant_rope {
+	/** Thickness of a layer; 0: the drum stays as thick as its core. */
+	double layer_um;
+	double turns_per_layer;
+	/** Diameter of the bare drum. */
+	double core_um;
 };
 
 /** What lw_plant_inject() can do. The comment says what the argument is. */
@@ -167,7 +180,30 @@ enum lw_plant_fault {
 	LW_PLANT_FAULT_ENCODER_EXTRA_PULSES,
 	/** 1: the stepper driver reports an alarm, and its motor has no current; 0: it works. */
 	LW_PLANT_FAULT_STEPPER_ALARM,
+	/** State of an encoder channel: enum lw_plant_channel_fault. */
+	LW_PLANT_FAULT_ENCODER_A,
+	LW_PLANT_FAULT_ENCODER_B,
+	/** 1: the encoder gives index pulses; 0: its index channel is not wired. */
+	LW_PLANT_FAULT_ENCODER_INDEX,
+	/** An overtravel switch reads actuated for N us: a contact that opens for a moment. */
+	LW_PLANT_FAULT_BLIP_PLUS,
+	LW_PLANT_FAULT_BLIP_MINUS,
+	/** No faults: 1 presses the button for early, or late, reversal; 0 lets go of it. */
+	LW_PLANT_FAULT_TRIM_EARLY,
+	LW_PLANT_FAULT_TRIM_LATE,
+	/** The limit switches trigger, and release, N us late, as limit_shift_um_per_mm_per_s. */
+	LW_PLANT_FAULT_SWITCH_LATE,
 	LW_PLANT_FAULT_COUNT,
+};
+
+/** Ways in which a channel of the encoder can be broken. */
+enum lw_plant_channel_fault {
+	LW_PLANT_CHANNEL_OK,
+	LW_PLANT_CHANNEL_STUCK_LOW,
+	LW_PLANT_CHANNEL_STUCK_HIGH,
+	/** A loose wire: low, then right, each for a random 1 to 3 ms. */
+	LW_PLANT_CHANNEL_FLICKER,
+	LW_PLANT_CHANNEL_FAULT_COUNT,
 };
 
 /** Ways in which a switch can be broken. */
@@ -213,6 +249,8 @@ struct lw_plant_truth {
 	uint64_t pole_slips;
 	/** The lag is less than half an electrical period. */
 	bool in_sync;
+	/** Rope that lies on the drum, which was bare at the beginning: lw_plant_set_rope(). */
+	double rope_um;
 };
 
 /** Private: one switch with its pole and its contacts. */
@@ -220,6 +258,7 @@ struct lw_plant_switch {
 	uint64_t pole_ns;
 	uint64_t contact_ns;
 	uint64_t bounce_end_ns;
+	uint64_t blip_end_ns;
 	double trigger_usteps;
 	double shift_s;
 	uint32_t transit_ns;
@@ -250,6 +289,7 @@ struct lw_plant_drum {
 	size_t profile_count;
 	size_t profile_index;
 	uint64_t dither_ns;
+	uint64_t flicker_ns;
 	int32_t target_milli_rpm;
 	uint32_t lose_pulses;
 	uint32_t illegal_changes;
@@ -257,6 +297,12 @@ struct lw_plant_drum {
 	uint32_t extra_changes;
 	int8_t direction;
 	bool dithered;
+	uint8_t channel_fault[2];
+	bool channel_open[2];
+	bool index_open;
+	bool wires_changed;
+	bool plain;          /* no fault hides or bends a transition */
+	int64_t shown_ahead; /* while plain: what dithers and extra pulses have added */
 };
 
 /** Private: motor, screw and carriage. */
@@ -301,12 +347,17 @@ struct lw_plant {
 	uint64_t now_ns;
 	/* Private from here. */
 	uint64_t event_ns;
-	uint64_t slow_ns;
+	uint64_t slow_ns; /* everything but transitions */
+	uint64_t rare_ns; /* everything but transitions and substeps */
 	uint64_t substep_ns;
+	double clear_usteps[LW_PLANT_SIDES]; /* between these no switch and no trigger is met */
+	double clear_s;                      /* a switch that is late is met so much earlier */
 	uint64_t random;
 	uint32_t bounce_interval_ns;
 	double hysteresis_usteps;
 	struct lw_plant_drum drum;
+	struct lw_plant_rope rope;
+	bool trim_pressed[2];
 	struct lw_plant_carriage carriage;
 	struct lw_plant_switch limit[LW_PLANT_SIDES];
 	struct lw_plant_switch overtravel[LW_PLANT_SIDES];
@@ -349,14 +400,112 @@ static inline uint64_t lw_plant_next_event_ns(const struct lw_plant *plant)
 uint32_t lw_plant_advance(struct lw_plant *plant);
 
 /**
- * @brief One step pulse. The rotor feels it from the next substep on.
+ * A run of transitions that no fault touches, and nothing lies between: most events by far. It
+ * holds what they change, so that one costs little; lw_plant_run_end() gives it to the plant.
+ */
+struct lw_plant_run {
+	uint32_t count;          /**< transitions that the plant does not have yet */
+	uint32_t count_to_index; /* count at which the index pulse begins; UINT32_MAX: never */
+	uint32_t index_spacing;
+	double now_ns; /* from the substep's beginning, as the following */
+	double next_ns;
+	double end_ns;
+	double period_ns;
+	double fraction;
+	double direction;
+};
+
+/** @brief Does the next event begin a run, that is, is it a plain transition, not after a time? */
+static inline bool lw_plant_next_is_run(const struct lw_plant *plant, uint64_t until_ns)
+{
+	return plant->drum.plain && plant->drum.transition_ns <= until_ns &&
+	       plant->drum.transition_ns <= plant->slow_ns;
+}
+
+/** @brief Begin a run, which ends before anything else happens, and not after a time. */
+static inline struct lw_plant_run lw_plant_run_begin(const struct lw_plant *plant,
+						     uint64_t until_ns)
+{
+	const struct lw_plant_drum *drum = &plant->drum;
+	const uint64_t begin_ns = plant->substep_ns - LW_PLANT_SUBSTEP_NS;
+	const uint64_t last_ns = until_ns < plant->slow_ns ? until_ns : plant->slow_ns;
+	const double end_ns = (double)(last_ns - begin_ns) + 1.0;
+	const int32_t to_index = drum->direction > 0
+					 ? drum->transitions_per_encoder_rev - drum->past_index
+					 : drum->past_index;
+
+	return (struct lw_plant_run){
+		.count_to_index = drum->index_open ? UINT32_MAX
+				  : to_index != 0  ? (uint32_t)to_index
+						   : (uint32_t)drum->transitions_per_encoder_rev,
+		.index_spacing = (uint32_t)drum->transitions_per_encoder_rev,
+		.next_ns = drum->offset_ns,
+		.end_ns = end_ns < LW_PLANT_SUBSTEP_NS ? end_ns : LW_PLANT_SUBSTEP_NS,
+		.period_ns = drum->period_ns,
+		.fraction = drum->fraction,
+		.direction = drum->direction,
+	};
+}
+
+/** @brief Execute the next transition of a run. @return whether the index pulse begins with it */
+static inline bool lw_plant_run_next(struct lw_plant_run *run)
+{
+	run->fraction -= run->direction;
+	run->now_ns = run->next_ns;
+	run->next_ns += run->period_ns;
+	if (++run->count != run->count_to_index) {
+		return false;
+	}
+	run->count_to_index += run->index_spacing;
+	return true;
+}
+
+/** @brief Whether lw_plant_run_next() may be called once more. */
+static inline bool lw_plant_run_goes_on(const struct lw_plant_run *run)
+{
+	return run->next_ns < run->end_ns;
+}
+
+/** @brief Make the plant what it is behind the run's last transition; the run may go on. */
+static inline void lw_plant_run_end(struct lw_plant *plant, struct lw_plant_run *run)
+{
+	struct lw_plant_drum *drum = &plant->drum;
+	const uint64_t begin_ns = plant->substep_ns - LW_PLANT_SUBSTEP_NS;
+	const int32_t spacing = drum->transitions_per_encoder_rev;
+	int32_t past_index = drum->past_index + drum->direction * (int32_t)run->count % spacing;
+	unsigned int shown;
+
+	past_index += past_index < 0 ? spacing : past_index >= spacing ? -spacing : 0;
+	drum->past_index = past_index;
+	drum->transitions += drum->direction * (int32_t)run->count;
+	drum->fraction = run->fraction;
+	drum->offset_ns = run->next_ns;
+	drum->transition_ns = run->next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)run->next_ns
+								 : LW_PLANT_NEVER_NS;
+	shown = (unsigned int)(drum->transitions + drum->shown_ahead);
+	plant->pins.encoder_a = ((shown ^ shown >> 1) & 1u) != 0;
+	plant->pins.encoder_b = (shown >> 1 & 1u) != 0;
+	plant->pins.encoder_index = past_index == 0 && !drum->index_open;
+	plant->now_ns = begin_ns + (uint32_t)run->now_ns;
+	plant->event_ns =
+		drum->transition_ns < plant->slow_ns ? drum->transition_ns : plant->slow_ns;
+	run->count_to_index -= run->count;
+	run->count = 0;
+}
+
+/**
+ * @brief Step pulses. The rotor feels them from the next substep on.
  *
  * The driver counts pulses whether or not the motor current is on.
  *
- * @param plant     plant
- * @param direction +1 or -1
+ * @param plant plant
+ * @param steps positive or negative
  */
-void lw_plant_step(struct lw_plant *plant, int direction);
+static inline void lw_plant_step(struct lw_plant *plant, int steps)
+{
+	plant->carriage.commanded_usteps += plant->carriage.reversed ? -steps : steps;
+	plant->carriage.step_pulses += (uint64_t)(steps < 0 ? -steps : steps);
+}
 
 /**
  * @brief Motor current on or off.
@@ -380,6 +529,14 @@ void lw_plant_reference(struct lw_plant *plant);
  * @retval -ERANGE beyond #LW_PLANT_DRUM_MILLI_RPM_MAX; nothing changed
  */
 int lw_plant_drum_target(struct lw_plant *plant, int32_t drum_milli_rpm);
+
+/**
+ * @brief Choose the rope that lies on the drum.
+ *
+ * @retval 0       accepted
+ * @retval -ERANGE not finite, negative, or no turns in a layer; nothing changed
+ */
+int lw_plant_set_rope(struct lw_plant *plant, const struct lw_plant_rope *rope);
 
 /**
  * @brief Change how fast the drum follows lw_plant_drum_target().

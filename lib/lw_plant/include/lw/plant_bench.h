@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
  * The bench registers: drum speed, faults and truth of a plant over Modbus. Whoever owns the plant
@@ -9,15 +10,16 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "lw/bank.h"
+#include "lw/modbus/bank.h"
 #include "lw/map.h"
 #include "lw/plant.h"
 
 /** A bench. It refers to its plant: do not copy or move either. */
 struct lw_plant_bench {
 	struct lw_plant *plant;
-	bool power_cut; /**< the controller shall be restarted; its host clears it */
-	bool threads;   /**< the controller runs in threads that can hang; its host sets it */
+	bool power_cut;   /**< the controller shall be restarted; its host clears it */
+	bool memory_kept; /**< and what its memory keeps is kept, as over a watchdog's restart */
+	bool threads;     /**< the controller runs in threads that can hang; its host sets it */
 	enum lw_bench_thread hang; /**< the thread that shall hang */
 
 	struct lw_bench registers; /**< private: set-points, and image of what can be read */

@@ -1,32 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
 """Commands about getting at a controller: its write lock and its line settings."""
 
+import contextlib
 import dataclasses
 import time
 from typing import Annotated, Literal
 
 import typer
 
-from levelwind.connection import with_device
-from levelwind.device import Device, Line
-from levelwind.errors import ToolError
+from levelwind.errors import ToolError, UnknownOutcomeError
+from levelwind.line.connection import with_device
+from levelwind.line.device import Device
+from levelwind.line.live import flag, read_live
+from levelwind.line.parameter_sets import read_set, replace_set
+from levelwind.line.points import parse_value
+from levelwind.line.port import Line
 from levelwind.map_table import POINTS, Command, Flag
-from levelwind.output import console
-from levelwind.parameter_sets import read_set
-from levelwind.points import parse_value
-from levelwind.status import flag, read_live
+from levelwind.show.output import console
 
 
 @with_device
 def unlock(
     device: Device,
-    code: Annotated[int | None, typer.Argument(help="Asked for if it is left out.")] = None,
+    code: Annotated[str | None, typer.Argument(help="Asked for if it is left out.")] = None,
 ) -> None:
     """Open the write lock. It closes by itself after lock_timeout_s, or by `lock`."""
     if not flag(read_live(device), Flag.LOCKED):
         console.print("Not locked.")
         return
     if code is None:
-        code = typer.prompt("Code", type=int, hide_input=True)
+        code = typer.prompt("Code", hide_input=True)
     device.write({"unlock": parse_value(POINTS["unlock"], code)})
     console.print(f"Open for {_active(device, 'lock_timeout_s')} s. `levelwind lock` closes it.")
 
@@ -63,8 +66,7 @@ def line(
             "Other parameters are staged or not saved, and would be saved with the line settings: "
             "`levelwind diff` shows them; apply, revert or save them first."
         )
-    device.write(values)
-    device.command(Command.APPLY)
+    replace_set(device, values)
     changed = dataclasses.replace(
         device.line,
         unit=values.get("unit_id", device.line.unit),
@@ -72,7 +74,8 @@ def line(
         format=new_line or device.line.format,
     )
     confirm_s = _active(device, "line_confirm_s")
-    device.write({"command": int(Command.TRY_LINE)})
+    with contextlib.suppress(UnknownOutcomeError):  # then the trial itself shows it
+        device.write({"command": int(Command.TRY_LINE)})
     device.close()
     begin = time.monotonic()
     answering = _wait_for_answer(changed, confirm_s)

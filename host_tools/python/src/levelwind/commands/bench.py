@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Commands for the simulator and its plant."""
 
 from pathlib import Path
@@ -6,13 +7,14 @@ from typing import Annotated
 import typer
 from rich.progress import Progress
 
-from levelwind import launches, profiles, simulator
-from levelwind.connection import PORT_DEFAULT, Json, Port, with_device
-from levelwind.device import Device
+from levelwind.files import profiles
+from levelwind.line.connection import PORT_DEFAULT, Json, Port, with_device
+from levelwind.line.device import Device
+from levelwind.line.plant import check_plant
+from levelwind.line.points import enum_label
 from levelwind.map_table import State
-from levelwind.output import console, print_json, print_table, warn
-from levelwind.plant import check_plant
-from levelwind.points import enum_label
+from levelwind.show.output import console, print_json, print_table, warn
+from levelwind.simulate import launches, simulator
 
 Speed = Annotated[str | None, typer.Option("--speed", help="Factor of real time, or max.")]
 
@@ -24,9 +26,19 @@ def sim(
     storage: Annotated[Path | None, typer.Option(help="Where SAVE keeps parameters.")] = None,
     trace: Annotated[Path | None, typer.Option(help="CSV to write, a line per ms.")] = None,
     unit: Annotated[int | None, typer.Option(help="Modbus unit id.", min=1, max=247)] = None,
+    frame_silence_ms: Annotated[
+        int | None,
+        typer.Option(help="Silence that ends a frame; see its USB adapter.", min=1, max=1000),
+    ] = None,
+    tcp: Annotated[
+        str | None,
+        typer.Option(help="Serve Modbus TCP there, and no port.", metavar="ADDRESS:PORT"),
+    ] = None,
 ) -> None:
     """Run the simulator until Ctrl-C: a Modbus slave and a plant. Prints `ready PATH`."""
-    simulator.become(simulator.arguments(port, speed, seed, storage, trace, unit))
+    path = None if tcp else port
+    line = simulator.arguments(path, speed, seed, storage, trace, unit, frame_silence_ms, tcp)
+    simulator.become(line)
 
 
 @with_device
@@ -39,7 +51,7 @@ def launch(
     json_output: Json = False,
 ) -> None:
     """Play a speed profile on the simulated drum. Columns: rope_m_per_s, drum_rpm, motor_rpm or
-    edges_per_s. Ctrl-C stops the drum."""
+    edges_per_s. Ctrl-C stops the drum. Exit status 1 if the launch was not in order."""
     check_plant(device)
     points = profiles.read(profile, launches.read_gearing(device, motor_per_encoder))
     launches.upload(device, points)
@@ -49,7 +61,7 @@ def launch(
     with Progress(
         console=console, transient=True, disable=json_output or not console.is_terminal
     ) as progress:
-        task = progress.add_task(profile.name, total=1.0)
+        task = progress.add_task("launch", total=1.0)
         result = launches.play(device, points, lambda done: progress.update(task, completed=done))
     summary = result.summary() | {"profile_points": len(points)}
     if json_output:
@@ -60,6 +72,9 @@ def launch(
             for name, value in summary.items()
         ]
         print_table(("", "value"), rows)
+    if result.wrong:
+        warn(f"this launch was not in order: {'; '.join(result.wrong)}.")
+        raise typer.Exit(1)
 
 
 def demo(
@@ -68,7 +83,7 @@ def demo(
     out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("out"),
 ) -> None:
     """Simulator, setup, indexing, one launch, checks and a picture. Exit status 0 if all held."""
-    from levelwind.demo import run_demo  # noqa: PLC0415 - matplotlib and numpy take a second
+    from levelwind.simulate.demo import run_demo  # noqa: PLC0415 - matplotlib and numpy take a second
 
     if not run_demo(out, speed, stay):
         raise typer.Exit(1)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Commands about cam tables."""
 
 import struct
@@ -7,15 +8,18 @@ from typing import Annotated, Literal
 
 import typer
 
-from levelwind import cam_files, cam_levelwind, cam_report, planning
-from levelwind.cam import ROWS_MAX, Cam, Limits, Scale, Table, check, from_words, words
-from levelwind.connection import Json, with_device
-from levelwind.device import COMMAND_STATUS, Device
+from levelwind.cam import levelwind as cam_levelwind
+from levelwind.cam import report as cam_report
+from levelwind.cam.table import ROWS_MAX, Cam, Limits, Scale, Table, check, from_words, words
 from levelwind.errors import RefusedError, ToolError
+from levelwind.files import cam_files
+from levelwind.line.connection import Json, with_device
+from levelwind.line.device import COMMAND_STATUS, Device
+from levelwind.line.parameter_sets import read_sets
+from levelwind.line.points import parse_assignments
 from levelwind.map_table import POINTS, CamBankState, CamInterpolation, Command, MotionProfile
-from levelwind.output import console, print_json, print_table, warn
-from levelwind.parameter_sets import read_sets
-from levelwind.points import parse_assignments
+from levelwind.plan import planning
+from levelwind.show.output import console, print_json, print_table, warn
 
 app = typer.Typer(
     no_args_is_help=True, help="Cam tables: the carriage follows rows of (master, slave)."
@@ -60,7 +64,7 @@ STEP_RATE = POINTS["cam_steps_per_s_max"].default or 0
 PROFILE = POINTS["motion_profile"]
 CAM_REASON = [POINTS[f"cam_reason{part}"] for part in ("", "_row", "_value", "_limit")]
 
-# A bank as a file (lw/cam_banks.h).
+# A bank as a file (lw/cam/cam_banks.h).
 FIRST_BANK_FILE = 2
 HEAD_WORDS = 16
 ROW_WORDS = 4
@@ -175,10 +179,17 @@ Version = Annotated[int, typer.Option(help="Version of the table, for people.", 
 Name = Annotated[str, typer.Option(help="Name of the table; default: of the file.")]
 
 
+def _banks(device: Device) -> tuple[int | None, int]:
+    """The bank that is in force, if one is, and the one that takes an upload."""
+    status = device.read_names("cam_bank_0_state", "cam_bank_1_state")
+    states = [status["cam_bank_0_state"], status["cam_bank_1_state"]]
+    active = states.index(CamBankState.ACTIVE) if CamBankState.ACTIVE in states else None
+    return active, 1 if active == 0 else 0
+
+
 def _send(device: Device, table: Table) -> None:
     """Write a table into the bank that is not in force, and have it checked."""
-    status = device.read_names("cam_bank_0_state", "cam_bank_1_state")
-    bank = 1 if status["cam_bank_0_state"] == CamBankState.ACTIVE else 0
+    _, bank = _banks(device)
     data = words(table)
     for at in range(0, len(data), FILE_WORDS):
         part = data[at : at + FILE_WORDS]
@@ -194,9 +205,12 @@ def _command(device: Device, command: Command) -> None:
         why = device.read([*COMMAND_STATUS, *CAM_REASON])
         if why["cam_reason"] != why["command_reason"] or not why["cam_reason_row"]:
             raise
+        value, limit = why["cam_reason_value"], why["cam_reason_limit"]
         raise RefusedError(
-            f"Row {why['cam_reason_row']}: {error}: "
-            f"{why['cam_reason_value']}, limit {why['cam_reason_limit']}"
+            f"Row {why['cam_reason_row']}: {error}: {value}, limit {limit}",
+            error.reason,
+            value=value,
+            limit=limit,
         ) from None
 
 
@@ -270,8 +284,13 @@ def download(
     other: Annotated[bool, typer.Option("--next", help="The bank that is not in force.")] = False,
 ) -> None:
     """Write the table in force to a file."""
-    active = device.value("cam_bank_1_state") == CamBankState.ACTIVE
-    number = FIRST_BANK_FILE + (active != other)
+    active, upload_bank = _banks(device)
+    bank = upload_bank if other else active
+    if bank is None:
+        raise ToolError("No table is in force. `--next` reads the one that was uploaded.")
+    if device.value(f"cam_bank_{bank}_state") == CamBankState.EMPTY:
+        raise ToolError("No table was uploaded.")
+    number = FIRST_BANK_FILE + bank
     head = device.read_file(number, 0, HEAD_WORDS)
     count = min(struct.unpack(">16sIHH", head[:24])[3], ROWS_MAX)
     total = HEAD_WORDS + ROW_WORDS * count

@@ -1,7 +1,10 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command that puts a slave, whichever it is, through the Modbus standards."""
 
+import signal
 import statistics
 from collections import Counter
+from types import FrameType
 from typing import Annotated
 
 import typer
@@ -11,11 +14,12 @@ from levelwind.conformance.line import SerialLine
 from levelwind.conformance.slave import Slave
 from levelwind.conformance.suite import Outcome, Verdict, all_cases, run
 from levelwind.conformance.survey import SPACES, Found, survey
-from levelwind.connection import Json, with_line
-from levelwind.device import Line
 from levelwind.errors import ToolError
-from levelwind.output import console, print_json, print_table
+from levelwind.line.connection import Json, with_line
+from levelwind.line.port import Line
+from levelwind.show.output import console, print_json, print_table
 
+ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 Address = Annotated[int | None, typer.Option(min=0, max=65535, metavar="ADDRESS")]
 
 
@@ -43,9 +47,9 @@ def conformance(
     """Put any Modbus RTU slave through the standard, case by case. Exit status 1 if one fails.
 
     It asks for what the slave has; --coil, --discrete-input, --holding-register and
-    --input-register say where to look first. Writes put back what was read, except to the scratch
-    register. Unknown function codes and broken frames are sent, and counters are cleared: not for
-    a machine at work.
+    --input-register say where to look first. Whatever is written is put back, also on Ctrl-C.
+    Unknown function codes and broken frames are sent, and counters are cleared: not for a machine
+    at work.
     """
     if read_only and scratch_register is not None:
         raise ToolError("--read-only and --scratch-register exclude each other.")
@@ -55,6 +59,7 @@ def conformance(
     hints = {1: coil, 2: discrete_input, 3: holding_register, 4: input_register}
     port = SerialLine(line)
     try:
+        _end_in_order()
         slave = Slave(port, line.unit, line.timeout_s)
         found = survey(
             slave,
@@ -77,6 +82,18 @@ def conformance(
         console.print(", ".join(f"{counts[v]} {v.value}" for v in Verdict))
     if any(o.verdict == Verdict.FAIL for o in outcomes):
         raise typer.Exit(1)
+
+
+def _end_in_order() -> None:
+    """Only the first Ctrl-C (or SIGTERM) counts: a second one would cut off the putting back."""
+
+    def end(number: int, _: FrameType | None) -> None:
+        for each in ENDING_SIGNALS:
+            signal.signal(each, signal.SIG_IGN)
+        raise KeyboardInterrupt(signal.Signals(number).name)
+
+    for each in ENDING_SIGNALS:
+        signal.signal(each, end)
 
 
 def _case(outcome: Outcome) -> dict[str, str]:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Commands for work in the field: back up, restore, scripted setup."""
 
 from pathlib import Path
@@ -5,13 +6,13 @@ from typing import Annotated
 
 import typer
 
-from levelwind import backups, script
-from levelwind.connection import Json, with_device
-from levelwind.device import Device
 from levelwind.errors import ToolError
+from levelwind.files import backups, script
+from levelwind.line.connection import Json, with_device
+from levelwind.line.device import Device
+from levelwind.line.parameter_sets import COPIES, replace_set
 from levelwind.map_table import Command
-from levelwind.output import console, print_json
-from levelwind.parameter_sets import COPIES, replace_set
+from levelwind.show.output import console, print_json
 
 YamlFile = Annotated[Path, typer.Argument(help="YAML file.", metavar="FILE")]
 

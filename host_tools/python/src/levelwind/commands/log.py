@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command that shows the event log."""
 
 import dataclasses
@@ -5,10 +6,10 @@ from typing import Annotated
 
 import typer
 
-from levelwind import event_log
-from levelwind.connection import Json, with_device
-from levelwind.device import Device
-from levelwind.output import console, print_json, print_table
+from levelwind.line import event_log
+from levelwind.line.connection import Json, with_device
+from levelwind.line.device import Device
+from levelwind.show.output import console, print_json, print_table
 
 COUNTERS = ("boots", "watchdog_resets", "powered_s", "tracking_s", "log_unsaved")
 SECONDS_PER_HOUR = 3600
@@ -41,7 +42,7 @@ def log(
                 str(record.boot),
                 f"{record.time_ms / 1000:.1f}",
                 record.event_text,
-                record.detail_name,
+                record.detail_text,
                 f"{record.position_um / 1000:+.2f}",
                 f"{record.net_edges:+d}",
                 record.state_name,

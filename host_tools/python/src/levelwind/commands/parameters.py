@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Commands about parameters: read, write, make active, keep."""
 
 from dataclasses import asdict
@@ -5,20 +6,20 @@ from typing import Annotated, Literal
 
 import typer
 
-from levelwind.connection import Json, with_device
-from levelwind.device import Device
 from levelwind.errors import ToolError
-from levelwind.map_table import POINTS, Command, Point
-from levelwind.output import console, json_value, print_csv, print_json, print_table
-from levelwind.parameter_sets import COPIES, read_sets
-from levelwind.plant import write_plant
-from levelwind.points import (
+from levelwind.line.connection import Json, with_device
+from levelwind.line.device import Device
+from levelwind.line.parameter_sets import COPIES, read_sets
+from levelwind.line.plant import write_plant
+from levelwind.line.points import (
     PARAMETERS,
     format_value,
     limits_text,
     lookup,
     parse_assignments,
 )
+from levelwind.map_table import POINTS, Command, Point
+from levelwind.show.output import console, json_value, print_csv, print_json, print_table
 
 Names = Annotated[list[str] | None, typer.Argument(help="Names, or parts of names.")]
 
@@ -63,7 +64,7 @@ def get(device: Device, names: Names = None, json_output: Json = False) -> None:
                 p.name,
                 *(format_value(p, sets[copy][p.name]) for copy in COPIES),
                 p.unit,
-                "" if p.enum else limits_text(p).removesuffix(p.unit),
+                "" if p.enum else limits_text(p).removesuffix(f" {p.unit}"),
             )
             for p in parameters
         ]

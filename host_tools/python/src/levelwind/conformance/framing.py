@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cases about frames: CRC, unit ids, lengths, pauses, noise."""
 
 from collections.abc import Iterator

@@ -1,9 +1,11 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cases about diagnostics, identification, files, and functions that nobody has."""
 
 from collections.abc import Iterator
 
 from levelwind.conformance.slave import BROADCAST, Answer, Slave, word, words
 from levelwind.conformance.suite import (
+    RECOVERY_ATTEMPTS,
     Finding,
     NotApplicableError,
     case,
@@ -158,15 +160,20 @@ def listen_only(slave: Slave, found: Found) -> Iterator[Finding]:
     restart = b"\x08" + word(1, 0)
     if slave.request(restart).pdu != restart:
         raise NotApplicableError("FC08/01 is not answered: the slave would not come back")
-    answer = slave.optional(b"\x08" + word(4, 0))
-    if answer.exception == 1:
-        raise NotApplicableError("FC08/04 is not supported")
-    if not answer.silent:
-        yield fail(f"FC08/04: {answer}, no answer expected")
-    answer = slave.optional(slave.baseline)
-    if not answer.silent:
-        yield fail("a request was answered in listen only mode")
-    slave.optional(restart)
+    try:
+        answer = slave.optional(b"\x08" + word(4, 0))
+        if answer.exception == 1:
+            raise NotApplicableError("FC08/04 is not supported")
+        if not answer.silent:
+            yield fail(f"FC08/04: {answer}, no answer expected")
+        answer = slave.optional(slave.baseline)
+        if not answer.silent:
+            yield fail("a request was answered in listen only mode")
+    finally:  # also after Ctrl-C: it would stay mute for everybody
+        for _ in range(RECOVERY_ATTEMPTS):
+            slave.optional(restart)  # not answered in this mode
+            if slave.alive():
+                break
 
 
 # ---- FC17, report server id ----------------------------------------------------------------------

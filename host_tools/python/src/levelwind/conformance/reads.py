@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cases about the functions that read bits and registers."""
 
 from collections.abc import Iterator

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The slave under test: requests with a right CRC, answers judged by their form."""
 
 from dataclasses import dataclass, field
@@ -48,6 +49,7 @@ class Slave:
     latencies_s: list[float] = field(default_factory=list)
     baseline: bytes = b""  # a request that is known to be answered normally
     left_out: int = 0  # optional answers that have not come
+    understood: bool = False  # a frame of the right form has come
 
     @property
     def silence_s(self) -> float:
@@ -63,10 +65,10 @@ class Slave:
         return self.judge(received.frame, pdu[0])
 
     def patiently(self, pdu: bytes) -> Answer:
-        """The same request up to three times, until it is answered."""
+        """The same request up to three times, until it is answered, in the right form at first."""
         answer = self.request(pdu)
         for _ in range(2):
-            if not answer.silent:
+            if not answer.silent and (self.understood or not answer.malformed):
                 break
             answer = self.request(pdu)
         return answer
@@ -113,6 +115,7 @@ class Slave:
         ):
             if wrong:
                 return Answer(malformed=f"{what}: {shown}")
+        self.understood = True
         return Answer(exception=pdu[1]) if exception else Answer(pdu=pdu)
 
 

@@ -1,15 +1,18 @@
+# SPDX-License-Identifier: Apache-2.0
 """The list of cases, and how one is run."""
 
+import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from functools import partial
 
-from levelwind.conformance.slave import Answer, Slave
+from levelwind.conformance.slave import Answer, Slave, word
 from levelwind.conformance.survey import Found
 from levelwind.errors import ToolError
 
 RECOVERY_ATTEMPTS = 5
+SETTLE_S = 0.2
 
 
 class Verdict(Enum):
@@ -116,15 +119,36 @@ def run(
 def _run_one(item: Case, slave: Slave, found: Found) -> Outcome:
     try:
         findings = list(item.run(slave, found))
+        if not slave.alive():
+            findings.append(fail("the next valid request was not answered"))
+            if not slave.come_back(RECOVERY_ATTEMPTS):
+                raise ToolError(f"No answer any more since the case {item.name!r}.")
     except NotApplicableError as reason:
         return Outcome(item.name, item.section, Verdict.NOT_APPLICABLE, str(reason))
-    if not slave.alive():
-        findings.append(fail("the next valid request was not answered"))
-        if not slave.come_back(RECOVERY_ATTEMPTS):
-            raise ToolError(f"The slave has not answered any more since the case {item.name!r}.")
+    except KeyboardInterrupt:
+        time.sleep(SETTLE_S)  # the answer under way goes by
+        raise
+    finally:
+        _put_back_scratch(slave, found)
     order = list(Verdict)
     worst = max((f.verdict for f in findings), key=order.index, default=Verdict.PASS)
     return Outcome(item.name, item.section, worst, "; ".join(f.text for f in findings))
+
+
+def _put_back_scratch(slave: Slave, found: Found) -> None:
+    """The scratch register as it was found, however a case has ended."""
+    if found.scratch is None:
+        return
+    read = b"\x03" + word(found.scratch, 1)
+    for _ in range(RECOVERY_ATTEMPTS):
+        value = slave.request(read).pdu[2:]
+        if value == found.scratch_value:
+            return
+        if value:
+            head = b"\x06" + word(found.scratch)
+            if 6 not in found.functions:
+                head = b"\x10" + word(found.scratch, 1) + b"\x02"
+            slave.request(head + found.scratch_value)
 
 
 # ---- what most cases need ------------------------------------------------------------------------

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a slave has: functions, addresses, and what may be written. Found by asking."""
 
 from dataclasses import dataclass, field
@@ -63,6 +64,7 @@ class Found:
     coil: int | None = None
     may_write: bool = True
     scratch: int | None = None  # a holding register that may be changed
+    scratch_value: bytes = b""  # what it held
 
 
 def survey(
@@ -83,8 +85,12 @@ def survey(
             found.silent_functions.add(function)
         elif answer.exception != 1:
             found.functions.add(function)
-    if scratch is not None and not slave.request(b"\x03" + word(scratch, 1)).pdu:
-        raise ToolError(f"Holding register {scratch} cannot be read: it cannot be the scratch one.")
+    if scratch is not None:
+        found.scratch_value = slave.patiently(b"\x03" + word(scratch, 1)).pdu[2:]
+        if not found.scratch_value:
+            raise ToolError(
+                f"Holding register {scratch} cannot be read: it cannot be the scratch one."
+            )
     if may_write:
         found.register = _find_register(slave, found)
         found.coil = _find_coil(slave, found)
@@ -100,7 +106,13 @@ def _find_area(slave: Slave, found: Found, function: int, hint: int | None) -> N
         answer = slave.patiently(bytes([function]) + word(address, 1))
         if answer.silent and not slave.latencies_s:
             raise ToolError(
-                "No answer at all. Check power and wiring (A/B swapped?), --unit, --baud, --line."
+                "No answer at all. Check power and wiring (A/B swapped?), --unit, --baud, --line.\n"
+                "A slave in listen only mode (FC08/04) is mute until it is switched off and on."
+            )
+        if answer.malformed and not slave.understood:
+            raise ToolError(
+                f"Bytes came, no answer: {answer}.\n"
+                "Check --unit, --baud, --line and the wiring; does something else send?"
             )
         if answer.silent:
             found.silent_functions.add(function)

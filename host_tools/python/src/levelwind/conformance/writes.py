@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Cases about the functions that write. What is written is what was read, except to the scratch
 register."""
 

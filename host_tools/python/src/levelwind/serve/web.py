@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page and what it asks for: HTTP and one WebSocket."""
+
+import asyncio
+import contextlib
+import json
+import time
+from collections import deque
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from levelwind.errors import ToolError
+from levelwind.serve.guard import Guard, Sessions
+from levelwind.serve.lay import Growth
+from levelwind.serve.metrics import exposition
+from levelwind.serve.operate import Jog, Operator
+from levelwind.serve.owner import PortOwner
+from levelwind.serve.recorder import Launches, Recorder
+from levelwind.serve.view import Seen, log_rows, view
+from levelwind.serve.watcher import Watcher
+from levelwind.show.status import status_json
+
+PAGE = Path(__file__).parent / "page"
+SEND_EVERY_S = 0.1
+LAY_EVERY_S = 2.0
+TREND_EVERY_S = 0.2
+TREND_S = 300
+SOCKETS_MAX = 32
+COOKIE = "levelwind"
+
+
+@dataclass
+class Served:
+    """All that the page looks at."""
+
+    owner: PortOwner
+    watcher: Watcher
+    recorder: Recorder | None
+    sessions: Sessions | None
+    """None: nobody may give commands."""
+    gateway_clients: Callable[[], int] = lambda: 0
+    loopback: bool = True
+    names: frozenset[str] = frozenset()
+    on_start: Callable[[], Any] = lambda: None
+    growth: Growth = field(default_factory=Growth)
+    trend: deque[list[float]] = field(
+        default_factory=lambda: deque(maxlen=int(TREND_S / TREND_EVERY_S))
+    )
+
+    def see(self, seen: Seen) -> None:
+        """A look at the controller: keep what the page draws of the past."""
+        self.growth.see(seen, self.watcher.parameters)
+        if not self.trend or seen.stamp_s - self.trend[-1][0] >= TREND_EVERY_S:
+            status, latest = seen.status, self.owner.counts.line_s
+            self.trend.append(
+                [
+                    round(seen.stamp_s, 3),
+                    status["rope_speed_mm_per_s"] / 1000,
+                    status["position_um"] / 1000,
+                    round(1000 * latest[-1], 2) if latest else 0.0,
+                ]
+            )
+
+
+class Page:
+    """The routes."""
+
+    def __init__(self, served: Served) -> None:
+        self.served = served
+        self.operator = Operator(served.owner)
+        self.jog = Jog(self.operator) if served.sessions is not None else None
+        self._sockets: set[WebSocket] = set()
+
+    # ---- looking -------------------------------------------------------------------------------
+
+    async def live(self, socket: WebSocket) -> None:
+        """What happens, ten times a second; from the page only that a key is held."""
+        if len(self._sockets) >= SOCKETS_MAX:
+            await socket.close(1013, "Too many pages are open.")
+            return
+        await socket.accept()
+        self._sockets.add(socket)
+        sender = asyncio.create_task(self._send(socket))
+        try:
+            while True:
+                self._hear(socket, await socket.receive_text())
+        except (WebSocketDisconnect, RuntimeError):
+            pass
+        finally:
+            if self.jog is not None:
+                self.jog.let_go(socket)
+            self._sockets.discard(socket)
+            sender.cancel()
+            with contextlib.suppress(asyncio.CancelledError, Exception):
+                await sender
+
+    def _hear(self, socket: WebSocket, text: str) -> None:
+        try:
+            direction = int(json.loads(text)["jog"])
+        except (ValueError, KeyError, TypeError):
+            return
+        if self.jog is None or not self._may_command(socket):
+            return
+        if direction in (-1, 1):
+            self.jog.hold(socket, direction)
+        else:
+            self.jog.let_go(socket)
+
+    async def _send(self, socket: WebSocket) -> None:
+        served = self.served
+        await socket.send_json({"trend": list(served.trend), "now": time.monotonic()})
+        told_log: object = None
+        told_lay = 0.0
+        number = 0
+        while True:
+            number += 1
+            seen = served.watcher.seen
+            document: dict[str, object] = {
+                "number": number,
+                "now": time.monotonic(),
+                "stamp": seen.stamp_s if seen else None,
+                "problem": served.watcher.problem,
+                "commands": self.jog is not None,
+                "open": self._may_command(socket),
+                "jog_problem": self.jog.problem if self.jog else "",
+                "recorder": served.recorder.state() if served.recorder else None,
+                "clients": served.gateway_clients(),
+            }
+            if seen is not None:
+                document["view"] = view(seen)
+                document["trend_row"] = served.trend[-1] if served.trend else None
+                if seen.log is not told_log:
+                    told_log = seen.log
+                    document["log"] = log_rows(seen.log)
+            if time.monotonic() - told_lay > LAY_EVERY_S:
+                told_lay = time.monotonic()
+                document["lay"] = await run_in_threadpool(served.growth.picture)
+            await socket.send_json(document)
+            await asyncio.sleep(SEND_EVERY_S)
+
+    async def status(self, _: Request) -> Response:
+        """The status for programs, with its age."""
+        seen = self.served.watcher.seen
+        if seen is None:
+            return JSONResponse({"problem": self.served.watcher.problem}, 503)
+        age_s = round(time.monotonic() - seen.stamp_s, 3)
+        return JSONResponse(
+            {"age_s": age_s, "problem": self.served.watcher.problem, **status_json(seen.status)}
+        )
+
+    async def metrics(self, _: Request) -> Response:
+        """For Prometheus."""
+        body, kind = exposition(self.served.owner, self.served.watcher, self.served.recorder)
+        return Response(body, media_type=kind)
+
+    async def parameters(self, _: Request) -> Response:
+        """The three copies."""
+        return await self._told(self.operator.parameters)
+
+    # ---- launches ------------------------------------------------------------------------------
+
+    def _launches(self) -> Launches:
+        if self.served.recorder is None:
+            raise ToolError("Nothing is recorded: `levelwind serve --record FILE.sqlite`.")
+        return Launches(self.served.recorder.path)
+
+    async def launches(self, _: Request) -> Response:
+        """The newest."""
+        return await self._told(lambda: self._launches().list(50))
+
+    async def launch_picture(self, request: Request) -> Response:
+        """One as a picture."""
+        number = request.path_params["number"]
+        try:
+            picture = await run_in_threadpool(lambda: self._launches().picture(number))
+        except ToolError as error:
+            return PlainTextResponse(str(error), 404)
+        return Response(picture, media_type="image/png")
+
+    async def launch_csv(self, request: Request) -> Response:
+        """One as a table."""
+        number = request.path_params["number"]
+        try:
+            table = await run_in_threadpool(lambda: self._launches().csv(number))
+        except ToolError as error:
+            return PlainTextResponse(str(error), 404)
+        return Response(table, media_type="text/csv")
+
+    # ---- commands ------------------------------------------------------------------------------
+
+    def _may_command(self, connection: Request | WebSocket) -> bool:
+        sessions = self.served.sessions
+        return sessions is not None and sessions.is_open(connection.cookies.get(COOKIE))
+
+    async def pin(self, request: Request) -> Response:
+        """The PIN: opens commands in this browser for a while."""
+        sessions = self.served.sessions
+        if sessions is None:
+            return _refused("This page can only look: the server was started without commands.")
+        wait_s = sessions.wait_s()
+        if wait_s > 0:
+            return _refused(f"Too many wrong PINs: wait {wait_s:.0f} s.", 429)
+        sessions.count_try()
+        given = (await _json(request)).get("pin")
+        if not isinstance(given, str) or not await run_in_threadpool(sessions.pin.fits, given):
+            return _refused("Wrong PIN.")
+        answer = JSONResponse({"text": "Commands are open."})
+        answer.set_cookie(COOKIE, sessions.open(), httponly=True, samesite="strict")
+        return answer
+
+    async def leave(self, request: Request) -> Response:
+        """No more commands from this browser."""
+        if self.served.sessions is not None:
+            self.served.sessions.close(request.cookies.get(COOKIE))
+        return JSONResponse({"text": "Commands are closed."})
+
+    async def act(self, request: Request) -> Response:
+        """A command."""
+        if not self._may_command(request):
+            return _refused("Give the PIN first.")
+        given = await _json(request)
+        name = str(given.get("name"))
+        if name == "set_rope":
+            return await self._told(lambda: self.operator.set_rope(given.get("metres")))
+        if name == "stage":
+            values = given.get("values")
+            return await self._told(
+                lambda: self.operator.stage(values if isinstance(values, dict) else {})
+            )
+        return await self._told(lambda: self.operator.act(name))
+
+    async def _told(self, do: Callable[[], object]) -> Response:
+        """What it returns, or why it was refused."""
+        try:
+            result = await run_in_threadpool(do)
+        except ToolError as error:
+            return JSONResponse({"text": str(error)}, 409)
+        finally:
+            self.served.watcher.look_again()
+        return JSONResponse({"text": result} if isinstance(result, str) else result)
+
+
+def _refused(text: str, status: int = 403) -> Response:
+    return JSONResponse({"text": text}, status)
+
+
+async def _json(request: Request) -> dict[str, object]:
+    try:
+        given = json.loads(await request.body())
+    except ValueError:
+        return {}
+    return given if isinstance(given, dict) else {}
+
+
+def _file(name: str) -> Callable[[Request], Any]:
+    async def send(_: Request) -> Response:
+        return FileResponse(PAGE / name)
+
+    return send
+
+
+def application(served: Served) -> Starlette:
+    """The whole of it."""
+    page = Page(served)
+
+    @contextlib.asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncIterator[None]:
+        started = served.on_start()
+        if asyncio.iscoroutine(started):
+            await started
+        yield
+        if page.jog is not None:
+            await run_in_threadpool(page.jog.close)
+
+    return Starlette(
+        routes=[
+            Route("/", _file("index.html")),
+            Route("/page.css", _file("page.css")),
+            Route("/page.js", _file("page.js")),
+            Route("/icon.svg", _file("icon.svg")),
+            WebSocketRoute("/live", page.live),
+            Route("/metrics", page.metrics),
+            Route("/api/status", page.status),
+            Route("/api/parameters", page.parameters),
+            Route("/api/launches", page.launches),
+            Route("/api/launches/{number:int}/picture.png", page.launch_picture),
+            Route("/api/launches/{number:int}/samples.csv", page.launch_csv),
+            Route("/api/pin", page.pin, methods=["POST"]),
+            Route("/api/leave", page.leave, methods=["POST"]),
+            Route("/api/act", page.act, methods=["POST"]),
+        ],
+        middleware=[Middleware(Guard, loopback=served.loopback, names=served.names)],
+        lifespan=lifespan,
+    )

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Files that are written whole, or not at all."""
+
+import contextlib
+from pathlib import Path
+
+from levelwind.errors import ToolError
+
+
+def write(path: Path, content: bytes | str) -> None:
+    """Write a file, text as UTF-8. On a full disk what was there stays; ToolError says why."""
+    data = content.encode() if isinstance(content, str) else content
+    in_place = path.is_symlink() or (path.exists() and not path.is_file())
+    new = path if in_place else path.with_name(f"{path.name}.new")
+    try:
+        new.write_bytes(data)
+        new.replace(path)
+    except OSError as error:
+        if not in_place:
+            with contextlib.suppress(OSError):
+                new.unlink()
+        raise ToolError(f"{path} cannot be written: {error.strerror}.") from error

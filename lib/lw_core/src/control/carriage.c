@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+#include "carriage_acts.h"
+
+#include <errno.h>
+
+#include "lw/bytes/numbers.h"
+#include "lw/bytes/require.h"
+
+int lw_carriage_busy(struct lw_refusal *why, enum lw_reason reason)
+{
+	why->reason = (uint16_t)reason;
+	return -EBUSY;
+}
+
+void lw_carriage_cut(struct lw_controller *controller)
+{
+	struct lw_motion *motion = &controller->motion;
+
+	lw_motion_set_source(motion, LW_EDGE_SOURCE_NONE);
+	if (motion->cam.on && controller->params->cam_axis == LW_CAM_AXIS_FREE) {
+		lw_motion_set_position(motion, motion->window, 0, 0);
+	}
+	motion->cam.on = false;
+	motion->requests = 0;
+	motion->request_correction_usteps = 0;
+	motion->stop_at_rest = 0;
+	controller->moving.halting = false;
+	controller->moving.halt_sent = false;
+}
+
+void lw_carriage_fail(struct lw_controller *controller, enum lw_fault fault)
+{
+	lw_carriage_cut(controller);
+	controller->state = LW_STATE_FAULT;
+	controller->fault = fault;
+	controller->indexed = false;
+	controller->on_orbit = false;
+}
+
+struct lw_law_window *lw_carriage_spare_window(struct lw_controller *controller)
+{
+	return controller->motion.window == &controller->windows[0] ? &controller->windows[1]
+								    : &controller->windows[0];
+}
+
+struct lw_law_window lw_carriage_track_window(const struct lw_controller *controller)
+{
+	return lw_params_window(controller->params, controller->derived, controller->trim.plus_um,
+				controller->trim.minus_um);
+}
+
+void lw_carriage_request(struct lw_controller *controller, struct lw_law_window window,
+			 enum lw_motion_request request, int32_t correction_usteps)
+{
+	LW_REQUIRE(window.ka > 0 && window.ks > 0 && window.sweep_begin < window.sweep_end);
+	struct lw_motion *motion = &controller->motion;
+	struct lw_law_window *spare;
+
+	/* Withdraw an earlier window first: the interrupt must not read it half changed. */
+	motion->requests &= LW_MOTION_REQUEST_CORRECTION;
+	spare = lw_carriage_spare_window(controller);
+	*spare = window;
+	motion->request_window = spare;
+	if (request == LW_MOTION_REQUEST_REBASE) {
+		motion->requests = 0;
+		motion->request_correction_usteps = correction_usteps;
+	}
+	lw_motion_request(motion, (uint8_t)request);
+}
+
+int32_t lw_carriage_pos_usteps(const struct lw_controller *controller)
+{
+	return lw_law_pos_usteps(lw_motion_m(&controller->motion));
+}
+
+int32_t lw_carriage_lag_usteps(const struct lw_controller *controller, int32_t u)
+{
+	/* A jog is not judged by switches: then the rate does not matter. */
+	const int64_t edges_per_s = controller->motion.source == LW_EDGE_SOURCE_TIMER
+					    ? controller->params->index_rate_edges_per_s
+					    : controller->speed.edges_per_s;
+
+	if (controller->motion.cam.on) {
+		return 0;
+	}
+	/* Below 2^16 * 2^30 * 2^15 for any drum that a counter of 32 bit can follow. */
+	return (int32_t)lw_divide_nearest(edges_per_s * u * controller->params->switch_delay_us,
+					  (int64_t)1000000 * LW_USTEP);
+}
+
+int32_t lw_carriage_lag_max_usteps(const struct lw_controller *controller)
+{
+	const int32_t lag_usteps = lw_carriage_lag_usteps(controller, controller->derived->ks);
+
+	return lag_usteps < 0 ? -lag_usteps : lag_usteps;
+}
+
+bool lw_carriage_moves_toward(int direction, int side)
+{
+	return direction == lw_side_direction(side);
+}
+
+void lw_carriage_clear_fault(struct lw_controller *controller)
+{
+	controller->fault = LW_FAULT_NONE;
+	controller->overspeed_trip = false;
+	for (int side = 0; side < 2; side++) {
+		controller->wiring[side] = controller->limit[side].wiring_fault;
+	}
+	if (controller->state == LW_STATE_FAULT) {
+		controller->state = LW_STATE_UNINDEXED;
+	}
+	if (controller->moving.rest_state == LW_STATE_FAULT) {
+		controller->moving.rest_state = LW_STATE_UNINDEXED; /* a jog is under way */
+	}
+}

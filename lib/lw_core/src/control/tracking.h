@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/**
+ * @file
+ * Following the drum, and whether the switches trigger where they are (LOS 1 and 2).
+ */
+#ifndef LW_TRACKING_H
+#define LW_TRACKING_H
+
+#include "carriage_acts.h"
+
+/** Let the drum move what has been placed, by the law or by a cam. */
+void lw_tracking_begin(struct lw_controller *controller);
+
+/** Follow the drum by the law from here. */
+void lw_tracking_start(struct lw_controller *controller);
+
+/** Stop following a resting drum. The carriage stands; it can go on as if nothing had been. */
+void lw_tracking_leave(struct lw_controller *controller);
+
+/** Judge the switches. Every tick in the state TRACKING. */
+void lw_tracking_tick(struct lw_controller *controller, const struct lw_carriage_trigger *triggers);
+
+#endif /* LW_TRACKING_H */

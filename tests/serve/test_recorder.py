@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Launches on the disk: whole, through kills and full disks; and the numbers for Prometheus."""
+
+import csv
+import io
+import itertools
+import json
+import re
+import resource
+import sqlite3
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from levelwind.errors import ToolError
+from levelwind.map_table import BenchCommand
+from levelwind.serve.lay import Growth
+from levelwind.serve.recorder import Launches, Recorder
+from prometheus_client.parser import text_string_to_metric_families
+from served import TOOL, Served, wait
+
+Start = Callable[..., Served]
+
+
+def wind(served: Served, seconds: float = 2.0) -> None:
+    """A launch: the drum turns so long, then rests."""
+    with served.device() as device:
+        device.write({"bench_drum_speed_millirpm": 300_000})
+        time.sleep(seconds)  # how long a launch lasts
+        device.write({"bench_drum_speed_millirpm": 0})
+        wait(lambda: device.value("drum_at_rest"))
+
+
+def tool(*arguments: str) -> str:
+    done = subprocess.run(
+        [str(TOOL), *arguments], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture
+def record(tmp_path: Path) -> Path:
+    return tmp_path / "launches.sqlite"
+
+
+def test_a_launch_from_rest_to_rest(start: Start, record: Path, tmp_path: Path) -> None:
+    served = start("--record", str(record))
+    served.index()
+    wind(served)
+    wait(lambda: record.exists() and [o for o in Launches(record).list() if o["ended"]])
+    launch = Launches(record).one(1)
+    assert launch["result"]["launch_permit"] == "kept"
+    assert launch["result"]["max_rope_speed_m_per_s"] == pytest.approx(12, rel=0.05)
+    assert launch["parameters"]["pitch_um"] == 12_000
+    assert launch["firmware"].startswith("0.")
+    samples = launch["samples"]
+    gaps = [b["time_s"] - a["time_s"] for a, b in itertools.pairwise(samples)]
+    assert sorted(gaps)[len(gaps) // 2] == pytest.approx(0.05, abs=0.01)
+    rope_m = (samples[-1]["rope_mm"] - samples[0]["rope_mm"]) / 1000
+    with served.device() as device:
+        assert samples[-1]["net_edges"] == device.value("net_edges")
+    assert rope_m == pytest.approx(launch["result"]["rope_m"], abs=0.2)
+    # By the command line.
+    assert "permit kept" in tool("launches", "list", "--record", str(record))
+    picture = tmp_path / "launch.png"
+    assert "samples" in tool(
+        "launches", "show", "1", "--record", str(record), "--plot", str(picture)
+    )
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    table = tmp_path / "launch.csv"
+    tool("launches", "export", "1", "--record", str(record), "--csv", str(table))
+    rows = list(csv.DictReader(io.StringIO(table.read_text())))
+    assert len(rows) == len(samples)
+    assert int(rows[-1]["position_um"]) == samples[-1]["position_um"]
+    # By the page.
+    assert json.loads(served.get("api/launches"))[0]["id"] == 1
+    assert served.get("api/launches/1/picture.png").startswith(b"\x89PNG")
+    by_page = served.get("api/launches/1/samples.csv").decode()
+    assert by_page.splitlines() == table.read_text().splitlines()
+
+
+def test_a_kill_loses_less_than_a_second(start: Start, record: Path) -> None:
+    served = start("--record", str(record))
+    served.index()
+    with served.device() as device:
+        device.write({"bench_drum_speed_millirpm": 300_000})
+        time.sleep(2.5)
+        told_ms = device.value("uptime_ms")
+    served.kill()
+    samples = Launches(record).one(1)["samples"]
+    assert told_ms - samples[-1]["uptime_ms"] < 1000
+    served.start()
+    wait(lambda: len(Launches(record).list()) == 2, what="it goes on as a launch of its own")
+    assert "cut" in Launches(record).one(1)["result"]
+
+
+def test_a_full_disk_loses_nothing(start: Start, record: Path) -> None:
+    served = start("--record", str(record))
+    served.index()
+    wind(served, 0.5)
+    wait(lambda: [o for o in Launches(record).list() if o["ended"]])
+    # No file of the server may grow any more: what a full disk does, for this process alone.
+    # The log of SQLite (-wal) is the first to need room.
+    limit = record.with_name(record.name + "-wal").stat().st_size
+    resource.prlimit(served.process.pid, resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY))
+    with served.device() as device:
+        device.write({"bench_drum_speed_millirpm": 300_000})
+        wait(lambda: b"levelwind_recorder_ok 0.0" in served.get("metrics"), 10, "told")
+        assert served.status()["age_s"] < 1, "the page goes on"
+        device.write({"bench_drum_speed_millirpm": 0})
+        wait(lambda: device.value("drum_at_rest"))
+    resource.prlimit(
+        served.process.pid,
+        resource.RLIMIT_FSIZE,
+        (resource.RLIM_INFINITY, resource.RLIM_INFINITY),
+    )
+    wait(lambda: len([o for o in Launches(record).list() if o["ended"]]) == 2, 10, "room again")
+    times = [sample["time_s"] for sample in Launches(record).one(2)["samples"]]
+    assert max(b - a for a, b in itertools.pairwise(times)) < 0.5
+    assert b"levelwind_recorder_lost_samples_total 0.0" in served.get("metrics")
+
+
+def test_retention(start: Start, record: Path) -> None:
+    served = start("--record", str(record), "--keep", "2")
+    served.index()
+    for number in range(1, 5):
+        wind(served, 0.3)
+        wait(lambda: Launches(record).list(1)[0]["ended"], 10, "it is whole")
+        assert Launches(record).list(1)[0]["id"] == number
+    assert [one["id"] for one in Launches(record).list()] == [4, 3]
+    with sqlite3.connect(record) as base:
+        assert base.execute("SELECT DISTINCT launch FROM samples ORDER BY 1").fetchall() == [
+            (3,),
+            (4,),
+        ]
+
+
+def test_a_restart_of_the_controller_ends_the_launch(start: Start, record: Path) -> None:
+    served = start("--record", str(record))
+    served.index()
+    with served.device() as device:
+        device.write({"bench_drum_speed_millirpm": 300_000})
+        wait(lambda: Launches(record).list())
+        device.write({"bench_command": BenchCommand.POWER_CUT})
+    wait(
+        lambda: (
+            "cut" in Launches(record).one(1)["result"] if Launches(record).one(1)["ended"] else 0
+        )
+    )
+    assert Launches(record).one(1)["result"]["launch_permit"] == "kept"
+
+
+def test_what_is_no_record_is_told(tmp_path: Path) -> None:
+    with pytest.raises(ToolError, match="no such file"):
+        Launches(tmp_path / "nothing.sqlite")
+    text = tmp_path / "text"
+    text.write_text("this is no database, however long it may be " * 100)
+    with pytest.raises(ToolError, match="not a database"):
+        Launches(text).list()
+    with pytest.raises(ToolError, match="not a database"):
+        Recorder(text, None, Growth())
+    with pytest.raises(ToolError, match="unable to open"):
+        Recorder(tmp_path / "no" / "folder.sqlite", None, Growth())
+
+
+def test_metrics(start: Start) -> None:
+    served = start("--timeout", "0.2")
+    served.index()
+    wait(served.sees)
+
+    def values() -> dict[str, float]:
+        families = text_string_to_metric_families(served.get("metrics").decode())
+        return {
+            sample.name + "".join(sorted(sample.labels.values())): sample.value
+            for family in families
+            for sample in family.samples
+        }
+
+    wait(lambda: values()["levelwind_flaglaunch_permit"] == 1)
+    now = values()
+    assert now["levelwind_up"] == 1
+    assert now["levelwind_flaglos"] == 0
+    assert now["levelwind_line_requests_total"] > now["levelwind_line_page_requests_total"] - 2 > 0
+    assert 0 < now["levelwind_line_latency_seconds0.5"] < 0.1
+    with served.device() as device:
+        assert now["levelwind_position_um"] == device.value("position_um")
+    served.simulator.end()
+    wait(lambda: values()["levelwind_up"] == 0)
+    assert not any(re.match("levelwind_(position|flag)", name) for name in values()), "nothing old"
