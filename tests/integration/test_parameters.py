@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from levelwind.line.parameter_sets import set_crc
 from levelwind.map_table import POINTS, Command, Flag, Reason, Result, SlotState, State
 from slave import Simulator, Slave
 
@@ -33,6 +34,21 @@ def test_apply_swaps_the_whole_set(slave: Slave) -> None:
     assert slave.read("ks") == slave.read("ka") * slave.read("nr")
     assert not slave.flag(Flag.STAGED)
     assert slave.flag(Flag.DIRTY)
+
+
+def test_the_tool_and_the_controller_name_a_set_alike(slave: Slave) -> None:
+    changes = {"pitch_um": 11_000, "switch_minus_um": -78_300, "baud_rate": 9600, "lock_code": 77}
+    for name, value in changes.items():
+        slave.write(name, value)
+    assert slave.command(Command.APPLY) == Result.DONE
+    active = {point.name: slave.read(point.name, 1000) for point in PARAMETERS}
+    assert slave.read("active_crc") == set_crc(active)
+    assert slave.read("active_crc") != set_crc(active | {"pitch_um": 12_000})
+    assert slave.flag(Flag.NOT_ACCEPTED)
+    slave.write("unlock", 77)
+    slave.write("accepted_crc", set_crc(active))
+    assert slave.command(Command.APPLY) == Result.DONE
+    assert not slave.flag(Flag.NOT_ACCEPTED)
 
 
 def test_refused_apply_leaves_the_active_set(slave: Slave) -> None:

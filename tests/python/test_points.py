@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from levelwind.errors import ToolError
+from levelwind.line.parameter_sets import set_crc
 from levelwind.line.points import (
     NO_ADDRESS,
     PARAMETERS,
@@ -135,3 +136,8 @@ def test_the_integrators_page_has_the_runs_without_holes(title: str):
     told = [tuple(map(int, pair)) for pair in re.findall(r"(\d+), (\d+)", line[1])]
     points = [p for p in POINTS.values() if p.space == SPACES[title] and p.address < BENCH]
     assert told == [(run.address, run.count) for run in runs(points, 10_000)]
+
+
+def test_a_set_is_named_as_the_core_names_it():
+    """The same number stands in tests/unit/test_params.c."""
+    assert set_crc({point.name: point.default or 0 for point in PARAMETERS}) == 860_867_484

@@ -146,6 +146,69 @@ static void test_apply_of_the_decoding_waits_for_the_drum_to_rest(void)
 	}
 }
 
+static const struct lw_log_record *newest_event(void)
+{
+	return &rig.store.log.records[rig.store.log.newest % LW_LOG_RECORDS];
+}
+
+/** Sign the active set, as the laptop tool does. */
+static void accept(uint32_t crc)
+{
+	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_ACCEPTED_CRC, (int32_t)crc));
+	command(LW_COMMAND_APPLY);
+	assert_command(LW_COMMAND_APPLY, LW_RESULT_DONE, LW_REASON_NONE);
+}
+
+static void test_a_set_is_accepted_until_it_is_another_one(void)
+{
+	TEST_ASSERT_TRUE(flag(LW_FLAG_NOT_ACCEPTED));
+	track();
+	command(LW_COMMAND_STOP);
+	accept(status()->active_crc);
+	TEST_ASSERT_EQUAL_UINT16(LW_EVENT_ACCEPTED, newest_event()->event);
+	TEST_ASSERT_EQUAL_UINT32(status()->active_crc, newest_event()->detail);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_NOT_ACCEPTED));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_INDEXED));
+
+	/* Another line is the same winch, another jog is not. */
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_UNIT_ID, 9));
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_NOT_ACCEPTED));
+	TEST_ASSERT_EQUAL_UINT16(LW_EVENT_APPLIED, newest_event()->event);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_JOG_HOLD_MS, 300));
+	TEST_ASSERT_FALSE(flag(LW_FLAG_NOT_ACCEPTED)); /* only staged */
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_NOT_ACCEPTED));
+	TEST_ASSERT_EQUAL_INT32(1 << LW_LAUNCH_INHIBIT_NOT_TRACKING, status()->launch_inhibit);
+	TEST_ASSERT_EQUAL_INT(
+		0, write_register(LW_ADDRESS_JOG_HOLD_MS, lw_params_default.jog_hold_ms));
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_NOT_ACCEPTED));
+
+	command(LW_COMMAND_FACTORY_MOTION);
+	command(LW_COMMAND_APPLY);
+	TEST_ASSERT_TRUE(flag(LW_FLAG_NOT_ACCEPTED));
+	TEST_ASSERT_EQUAL_UINT16(LW_EVENT_ACCEPTED, newest_event()->event);
+	TEST_ASSERT_EQUAL_INT32(0, newest_event()->detail);
+}
+
+static void test_an_accepted_set_outlasts_a_power_cut(void)
+{
+	static uint8_t record[LW_PARAM_RECORD_SIZE];
+	struct lw_params signed_set = lw_params_default;
+
+	signed_set.pitch_um = 11000;
+	signed_set.accepted_crc = lw_params_crc(&signed_set);
+	(void)lw_param_record_encode(&signed_set, 1, record);
+	power_up(record, sizeof(record));
+	TEST_ASSERT_FALSE(flag(LW_FLAG_NOT_ACCEPTED));
+	/* A record of older firmware ends before the signature: nobody has signed it. */
+	(void)lw_record_seal(record, "LWPR", LW_PARAM_RECORD_SCHEMA, 1, 6);
+	power_up(record, LW_RECORD_OVERHEAD + 6);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_DEFAULTS_LOADED));
+	TEST_ASSERT_TRUE(flag(LW_FLAG_NOT_ACCEPTED));
+}
+
 static void test_apply_keeps_the_index_if_no_parameter_needs_it(void)
 {
 	track();
@@ -634,6 +697,8 @@ int main(void)
 	RUN_TEST(test_parameters_are_staged_then_applied);
 	RUN_TEST(test_apply_refused_says_why_and_changes_nothing);
 	RUN_TEST(test_apply_of_the_decoding_waits_for_the_drum_to_rest);
+	RUN_TEST(test_a_set_is_accepted_until_it_is_another_one);
+	RUN_TEST(test_an_accepted_set_outlasts_a_power_cut);
 	RUN_TEST(test_apply_keeps_the_index_if_no_parameter_needs_it);
 	RUN_TEST(test_apply_turns_the_encoder_without_a_false_edge);
 	RUN_TEST(test_apply_of_another_contact_type_sees_a_switch_that_is_held);

@@ -797,6 +797,27 @@ static void test_the_smallest_pitch_is_told_exactly(void)
 	}
 }
 
+/* Of the defaults, as set_crc() of the laptop tool works it out (tests/python/test_points.py). */
+#define CRC_OF_DEFAULTS 860867484u
+
+static void test_the_crc_names_what_moves_the_carriage(void)
+{
+	params = lw_params_default;
+	TEST_ASSERT_EQUAL_UINT32(CRC_OF_DEFAULTS, lw_params_crc(&params));
+	for (size_t i = 0; i < LW_MAP_PARAMS_COUNT; i++) {
+		const struct lw_point *point = &lw_map_params[i];
+		const bool counts = point->address != LW_ADDRESS_ACCEPTED_CRC &&
+				    !(point->flags & (LW_POINT_SCOPE_LINE | LW_POINT_SECRET));
+		uint32_t crc;
+
+		params = lw_params_default;
+		*(int32_t *)((char *)&params + point->offset) += 1;
+		crc = lw_params_crc(&params);
+		TEST_ASSERT_TRUE(crc >= 1 && crc <= LW_PARAMS_CRC_MAX);
+		TEST_ASSERT_TRUE((crc != CRC_OF_DEFAULTS) == counts);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -837,5 +858,6 @@ int main(void)
 	RUN_TEST(test_raw_slopes_up_to_the_last_below_one_step);
 	RUN_TEST(test_a_gear_of_two_to_two_is_none);
 	RUN_TEST(test_the_smallest_pitch_is_told_exactly);
+	RUN_TEST(test_the_crc_names_what_moves_the_carriage);
 	return UNITY_END();
 }

@@ -595,6 +595,10 @@ static const struct levelwind_value flags_2_values[] = {
 		11, "reacquired",
 		"After a restart in a launch a turning drum was taken up at an unknown place: a loss of synchronization, until an indexing has succeeded",
 	},
+	{
+		12, "not_accepted",
+		"The active set is not the one that somebody has accepted, or none ever was: `levelwind commission` checks a winch and signs its set. No launch is refused for it",
+	},
 };
 
 static const int32_t allowed_command[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 30, 31, 32};
@@ -1066,6 +1070,12 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.words = 1, .min = 0, .max = 1, .default_value = 0,
 	},
 	{
+		.name = "accepted_crc", .unit = "",
+		.text = "The set that somebody has accepted: active_crc as it was then, written by `levelwind commission` (0: none)",
+		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U32, .address = 207,
+		.words = 2, .min = 0, .max = 1073741823, .default_value = 0,
+	},
+	{
 		.name = "motion_profile", .unit = "",
 		.text = "What the carriage follows the drum by",
 		.block = LEVELWIND_BLOCK_PARAMETERS, .type = LEVELWIND_TYPE_U16, .address = 600,
@@ -1269,7 +1279,7 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.text = "The discrete inputs from 32 on, bit number = discrete input address - 32",
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 132,
 		.words = 2, .offset = offsetof(struct levelwind_status, flags_2),
-		.values = flags_2_values, .value_count = 12,
+		.values = flags_2_values, .value_count = 13,
 	},
 	{
 		.name = "rope_on_drum_mm", .unit = "mm",
@@ -1490,6 +1500,12 @@ const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT] = {
 		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U16, .address = 332,
 		.words = 1, .offset = offsetof(struct levelwind_status, slot_3),
 		.values = slot_state_values, .value_count = 6,
+	},
+	{
+		.name = "active_crc", .unit = "",
+		.text = "Names the active set by its values, those of the line and the lock's code left out; never 0. See accepted_crc",
+		.block = LEVELWIND_BLOCK_STATUS, .type = LEVELWIND_TYPE_U32, .address = 333,
+		.words = 2, .offset = offsetof(struct levelwind_status, active_crc),
 	},
 	{
 		.name = "encoder_interrupt_max_ns", .unit = "ns",

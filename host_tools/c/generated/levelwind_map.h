@@ -702,6 +702,11 @@ enum levelwind_flag {
 	 * synchronization, until an indexing has succeeded
 	 */
 	LEVELWIND_FLAG_REACQUIRED = 43,
+	/**
+	 * The active set is not the one that somebody has accepted, or none ever was: `levelwind
+	 * commission` checks a winch and signs its set. No launch is refused for it
+	 */
+	LEVELWIND_FLAG_NOT_ACCEPTED = 44,
 };
 
 /** Bit numbers of levelwind_status.launch_inhibit */
@@ -849,6 +854,7 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_TRIM_STEP_UM                    204
 #define LEVELWIND_ADDRESS_RESUME                          205
 #define LEVELWIND_ADDRESS_REACQUIRE_AFTER_RESTART         206
+#define LEVELWIND_ADDRESS_ACCEPTED_CRC                    207
 #define LEVELWIND_ADDRESS_MOTION_PROFILE                  600
 #define LEVELWIND_ADDRESS_CAM_START                       601
 #define LEVELWIND_ADDRESS_CAM_MASTER_EDGES                602
@@ -922,6 +928,7 @@ enum levelwind_block {
 #define LEVELWIND_ADDRESS_SLOT_1                          330
 #define LEVELWIND_ADDRESS_SLOT_2                          331
 #define LEVELWIND_ADDRESS_SLOT_3                          332
+#define LEVELWIND_ADDRESS_ACTIVE_CRC                      333
 #define LEVELWIND_ADDRESS_ENCODER_INTERRUPT_MAX_NS        340
 #define LEVELWIND_ADDRESS_LATE_INTERRUPTS                 342
 #define LEVELWIND_ADDRESS_ENCODER_INDEX_PULSES            344
@@ -1164,6 +1171,11 @@ struct levelwind_status {
 	/** Storage: second slot of event log and counters (enum levelwind_slot_state) */
 	int32_t slot_3;
 	/**
+	 * Names the active set by its values, those of the line and the lock's code left out; never
+	 * 0. See accepted_crc
+	 */
+	uint32_t active_crc;
+	/**
 	 * Longest time in the encoder interrupt since power-up, without the operating system's
 	 * share (0: not measured) [ns]
 	 */
@@ -1383,7 +1395,7 @@ struct levelwind_point {
 	size_t value_count;
 };
 
-#define LEVELWIND_POINT_COUNT 233
+#define LEVELWIND_POINT_COUNT 235
 
 /** All points, by block and rising address */
 extern const struct levelwind_point levelwind_points[LEVELWIND_POINT_COUNT];

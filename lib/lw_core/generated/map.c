@@ -421,6 +421,11 @@ const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT] = {
 		.flags = LW_POINT_WRITABLE, .min = 0, .max = 1, .default_value = 0,
 	},
 	{
+		.address = 207, .count = 1, .offset = offsetof(struct lw_params, accepted_crc),
+		.type = LW_TYPE_U32, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1073741823,
+		.default_value = 0,
+	},
+	{
 		.address = 600, .count = 1, .offset = offsetof(struct lw_params, motion_profile),
 		.type = LW_TYPE_U16, .flags = LW_POINT_WRITABLE, .min = 0, .max = 1,
 		.default_value = 0,
@@ -714,6 +719,10 @@ const struct lw_point lw_map_status[LW_MAP_STATUS_COUNT] = {
 	{
 		.address = 332, .count = 1, .offset = offsetof(struct lw_status, slot_3),
 		.type = LW_TYPE_U16,
+	},
+	{
+		.address = 333, .count = 1, .offset = offsetof(struct lw_status, active_crc),
+		.type = LW_TYPE_U32,
 	},
 	{
 		.address = 340, .count = 1,
@@ -1353,6 +1362,7 @@ const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT] = {
 	{.address = 41, .count = 1, .offset = 9, .type = LW_TYPE_BIT},
 	{.address = 42, .count = 1, .offset = 10, .type = LW_TYPE_BIT},
 	{.address = 43, .count = 1, .offset = 11, .type = LW_TYPE_BIT},
+	{.address = 44, .count = 1, .offset = 12, .type = LW_TYPE_BIT},
 };
 
 const uint8_t lw_map_coil_command[LW_MAP_COILS_COUNT] = {
@@ -1445,6 +1455,7 @@ const struct lw_params lw_params_default = {
 	.trim_step_um = 500,
 	.resume = 0,
 	.reacquire_after_restart = 0,
+	.accepted_crc = 0,
 	.motion_profile = 0,
 	.cam_start = 0,
 	.cam_master_edges = 1,

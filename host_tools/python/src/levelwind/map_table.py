@@ -659,6 +659,11 @@ class Event(MapEnum):
     SAVE_FAILED = 43, "save_failed", "The storage failed. Detail: its error number"
     FACTORY_STAGED = 44, "factory_staged", "Factory values were staged"
     CAM_ACTIVATED = 45, "cam_activated", "A cam table came into force. Detail: its version"
+    ACCEPTED = (
+        46,
+        "accepted",
+        "A parameter set was signed. Detail: accepted_crc; 0: the signature was taken back",
+    )
     LOCK_OPENED = 50, "lock_opened", "The write lock was opened"
     LOCK_CLOSED = 51, "lock_closed", "The write lock closed"
     ROPE_LAID_STANDING = (
@@ -1013,6 +1018,11 @@ class Flag(MapEnum):
         43,
         "reacquired",
         "After a restart in a launch a turning drum was taken up at an unknown place: a loss of synchronization, until an indexing has succeeded",
+    )
+    NOT_ACCEPTED = (
+        44,
+        "not_accepted",
+        "The active set is not the one that somebody has accepted, or none ever was: `levelwind commission` checks a winch and signs its set. No launch is refused for it",
     )
 
 
@@ -1647,6 +1657,14 @@ POINTS: dict[str, Point] = {
             space="discrete",
             type="bit",
             text="After a restart in a launch a turning drum was taken up at an unknown place: a loss of synchronization, until an indexing has succeeded",
+            block="discretes",
+        ),
+        Point(
+            name="not_accepted",
+            address=44,
+            space="discrete",
+            type="bit",
+            text="The active set is not the one that somebody has accepted, or none ever was: `levelwind commission` checks a winch and signs its set. No launch is refused for it",
             block="discretes",
         ),
         Point(
@@ -2837,6 +2855,21 @@ POINTS: dict[str, Point] = {
             mirrors={"active": 1206, "stored": 2206},
         ),
         Point(
+            name="accepted_crc",
+            address=207,
+            space="holding",
+            type="u32",
+            text="The set that somebody has accepted: active_crc as it was then, written by `levelwind commission` (0: none)",
+            block="parameters",
+            words=2,
+            min=0,
+            max=1073741823,
+            default=0,
+            scope="motion",
+            writable=True,
+            mirrors={"active": 1207, "stored": 2207},
+        ),
+        Point(
             name="motion_profile",
             address=600,
             space="holding",
@@ -3558,6 +3591,15 @@ POINTS: dict[str, Point] = {
             text="Storage: second slot of event log and counters",
             block="status",
             enum=SlotState,
+        ),
+        Point(
+            name="active_crc",
+            address=333,
+            space="input",
+            type="u32",
+            text="Names the active set by its values, those of the line and the lock's code left out; never 0. See accepted_crc",
+            block="status",
+            words=2,
         ),
         Point(
             name="encoder_interrupt_max_ns",

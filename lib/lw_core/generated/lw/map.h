@@ -602,6 +602,8 @@ enum lw_event {
 	LW_EVENT_FACTORY_STAGED = 44,
 	/** A cam table came into force. Detail: its version */
 	LW_EVENT_CAM_ACTIVATED = 45,
+	/** A parameter set was signed. Detail: accepted_crc; 0: the signature was taken back */
+	LW_EVENT_ACCEPTED = 46,
 	/** The write lock was opened */
 	LW_EVENT_LOCK_OPENED = 50,
 	/** The write lock closed */
@@ -942,6 +944,11 @@ enum lw_flag {
 	 * synchronization, until an indexing has succeeded
 	 */
 	LW_FLAG_REACQUIRED = 43,
+	/**
+	 * The active set is not the one that somebody has accepted, or none ever was: `levelwind
+	 * commission` checks a winch and signs its set. No launch is refused for it
+	 */
+	LW_FLAG_NOT_ACCEPTED = 44,
 };
 
 /** Bit numbers of lw_status.launch_inhibit */
@@ -1093,6 +1100,7 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_TRIM_STEP_UM                    204
 #define LW_ADDRESS_RESUME                          205
 #define LW_ADDRESS_REACQUIRE_AFTER_RESTART         206
+#define LW_ADDRESS_ACCEPTED_CRC                    207
 #define LW_ADDRESS_MOTION_PROFILE                  600
 #define LW_ADDRESS_CAM_START                       601
 #define LW_ADDRESS_CAM_MASTER_EDGES                602
@@ -1174,6 +1182,7 @@ enum lw_launch_inhibit_bit {
 #define LW_ADDRESS_SLOT_1                      330
 #define LW_ADDRESS_SLOT_2                      331
 #define LW_ADDRESS_SLOT_3                      332
+#define LW_ADDRESS_ACTIVE_CRC                  333
 #define LW_ADDRESS_ENCODER_INTERRUPT_MAX_NS    340
 #define LW_ADDRESS_LATE_INTERRUPTS             342
 #define LW_ADDRESS_ENCODER_INDEX_PULSES        344
@@ -1516,6 +1525,11 @@ struct lw_params {
 	 * gives reacquire by itself. THE CARRIAGE MOVES UNASKED
 	 */
 	int32_t reacquire_after_restart;
+	/**
+	 * The set that somebody has accepted: active_crc as it was then, written by `levelwind
+	 * commission` (0: none)
+	 */
+	uint32_t accepted_crc;
 	/** What the carriage follows the drum by (enum lw_motion_profile) */
 	int32_t motion_profile;
 	/** How a cam begins at a hand-over (enum lw_cam_start) */
@@ -1693,6 +1707,11 @@ struct lw_status {
 	int32_t slot_2;
 	/** Storage: second slot of event log and counters (enum lw_slot_state) */
 	int32_t slot_3;
+	/**
+	 * Names the active set by its values, those of the line and the lock's code left out; never
+	 * 0. See accepted_crc
+	 */
+	uint32_t active_crc;
 	/**
 	 * Longest time in the encoder interrupt since power-up, without the operating system's
 	 * share (0: not measured) [ns]
@@ -2008,7 +2027,7 @@ struct lw_bench {
  */
 extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
 
-#define LW_MAP_PARAMS_COUNT 77
+#define LW_MAP_PARAMS_COUNT 78
 
 /**
  * Parameters (staged). APPLY makes them active, SAVE stores the active set: holding registers,
@@ -2016,7 +2035,7 @@ extern const struct lw_point lw_map_setpoints[LW_MAP_SETPOINTS_COUNT];
  */
 extern const struct lw_point lw_map_params[LW_MAP_PARAMS_COUNT];
 
-#define LW_MAP_STATUS_COUNT 139
+#define LW_MAP_STATUS_COUNT 140
 
 /**
  * Identity, live status, LOS records, counters, command results and derived values: input
@@ -2044,7 +2063,7 @@ extern const struct lw_point lw_map_bench[LW_MAP_BENCH_COUNT];
 /** Coils, indexed by address */
 extern const struct lw_point lw_map_coils[LW_MAP_COILS_COUNT];
 
-#define LW_MAP_DISCRETES_COUNT 44
+#define LW_MAP_DISCRETES_COUNT 45
 
 /** Discrete inputs, indexed by address */
 extern const struct lw_point lw_map_discretes[LW_MAP_DISCRETES_COUNT];

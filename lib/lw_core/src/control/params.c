@@ -5,6 +5,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "lw/bytes/big_endian.h"
+#include "lw/bytes/crc32.h"
 #include "lw/bytes/numbers.h"
 #include "lw/motion/move.h"
 
@@ -279,6 +281,26 @@ struct lw_limit_switch_config lw_params_limit_switch(const struct lw_params *par
 		.transit_us = (uint32_t)params->switch_transit_ms * 1000,
 		.debounce_us = (uint32_t)params->switch_debounce_ms * 1000,
 	};
+}
+
+uint32_t lw_params_crc(const struct lw_params *params)
+{
+	uint32_t crc = 0;
+
+	for (size_t i = 0; i < LW_MAP_PARAMS_COUNT; i++) {
+		const struct lw_point *point = &lw_map_params[i];
+		uint8_t entry[6];
+		uint32_t value;
+
+		if (point->flags & (LW_POINT_SCOPE_LINE | LW_POINT_SECRET) ||
+		    point->address == LW_ADDRESS_ACCEPTED_CRC) {
+			continue;
+		}
+		memcpy(&value, (const char *)params + point->offset, sizeof(value));
+		(void)lw_put32(lw_put16(entry, point->address), value);
+		crc = lw_crc32_add(crc, entry, sizeof(entry));
+	}
+	return crc % LW_PARAMS_CRC_MAX + 1;
 }
 
 bool lw_params_need_index(const struct lw_params *from, const struct lw_params *to)

@@ -132,6 +132,7 @@ static void apply(struct lw_device *device)
 	}
 
 	const bool need_index = lw_params_need_index(&device->active, &device->staged);
+	const bool signs = device->staged.accepted_crc != device->active.accepted_crc;
 
 	if (device->staged.lock_code != device->active.lock_code) {
 		device->lock.open = false; /* who SAVEs a code has shown to know it */
@@ -141,10 +142,14 @@ static void apply(struct lw_device *device)
 	/* Nothing moves now: the interrupts only count edges, by the controller's own copies. */
 	device->active = device->staged;
 	device->derived = derived;
+	device->active_crc = lw_params_crc(&device->active);
 	lw_set_copy_keep(&device->set_copy, &device->active, &device->derived);
 	lw_controller_configure(&device->controller, &device->active, &device->derived, need_index);
 	lw_device_cam_configure(device);
 	lw_device_log(device, LW_EVENT_APPLIED, 0);
+	if (signs) {
+		lw_device_log(device, LW_EVENT_ACCEPTED, (int32_t)device->active.accepted_crc);
+	}
 }
 
 static void set_rope(struct lw_device *device)

@@ -125,6 +125,7 @@ void lw_device_init(struct lw_device *device, const struct lw_device_config *con
 	(void)lw_params_derive(&device->active, &device->derived, &why);
 	lw_set_copy_keep(&device->set_copy, &device->active, &device->derived);
 	device->staged = device->active;
+	device->active_crc = lw_params_crc(&device->active);
 
 	lw_controller_init(&device->controller, &device->active, &device->derived, inputs, now_us);
 	lw_device_cam_init(device);

@@ -77,6 +77,7 @@ static uint64_t flags(const struct lw_device *device, uint16_t launch_inhibit)
 	FLAG(LINE_ECHO, lw_device_line_echoes(device));
 	FLAG(REACQUIRED, controller->los.reacquired.set);
 	FLAG(RESUME_DOUBTFUL, controller->resume.known && controller->resume.doubtful);
+	FLAG(NOT_ACCEPTED, device->active.accepted_crc != device->active_crc);
 	FLAG(ROPE_DOUBTFUL, lw_rope_length_doubtful(&controller->rope_length));
 #undef FLAG
 	return bits;
@@ -224,6 +225,8 @@ void lw_device_refresh_status(struct lw_device *device)
 		.slot_1 = (int32_t)param_slots->state[1],
 		.slot_2 = (int32_t)journal_slots->state[0],
 		.slot_3 = (int32_t)journal_slots->state[1],
+
+		.active_crc = device->active_crc,
 
 		.encoder_interrupt_max_ns = device->health.encoder_interrupt_max_ns,
 		.late_interrupts = controller->quadrature.late_interrupts,

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The three parameter sets of a controller: staged, active, stored."""
 
+import struct
+import zlib
 from collections.abc import Iterable, Mapping
 
 from levelwind.errors import NoAnswerError, RefusedError, ToolError, UnknownOutcomeError
@@ -24,6 +26,20 @@ def read_sets(device: Device, points: Iterable[Point]) -> dict[str, dict[str, in
     """The values of parameters in all three sets."""
     points = list(points)
     return {copy: read_set(device, copy, points) for copy in COPIES}
+
+
+def set_crc(values: Mapping[str, int]) -> int:
+    """The number that names a whole set, as the register `active_crc` tells it of the active one.
+
+    Of the CRC-32 over register address and value of each parameter that moves the carriage, the
+    remainder by 2^30 - 1, plus 1 (lw_params_crc() in lw/control/params.h).
+    """
+    crc = 0
+    for point in sorted(PARAMETERS, key=lambda p: p.address):
+        if point.scope == "motion" and not point.secret and point.name != "accepted_crc":
+            entry = struct.pack(">HI", point.address, values[point.name] & 0xFFFFFFFF)
+            crc = zlib.crc32(entry, crc)
+    return crc % 0x3FFFFFFF + 1
 
 
 def replace_set(device: Device, values: Mapping[str, int]) -> None:

@@ -39,6 +39,7 @@ NOTICES = (
     Flag.DEFAULTS_LOADED,
     Flag.STAGED,
     Flag.DIRTY,
+    Flag.NOT_ACCEPTED,
     Flag.TRIM_PENDING,
     Flag.CORRECTION_PENDING,
     Flag.RESTART_NEEDED,

@@ -109,6 +109,19 @@ struct lw_quadrature_config lw_params_quadrature(const struct lw_params *params)
 /** How the limit switches are debounced under this set. */
 struct lw_limit_switch_config lw_params_limit_switch(const struct lw_params *params);
 
+/** Largest number that names a set: below any limit of a signed register pair. */
+#define LW_PARAMS_CRC_MAX 0x3FFFFFFFu
+
+/**
+ * A number that names a set by its values: of the CRC-32 over register address (16 bit) and value
+ * (32 bit) of each parameter, high byte first, by rising address, the remainder by
+ * LW_PARAMS_CRC_MAX, plus 1. Left out are the line's settings, secrets, and accepted_crc itself:
+ * none of them changes what the carriage does, and a reader of the registers can work it out.
+ *
+ * @return 1 to LW_PARAMS_CRC_MAX
+ */
+uint32_t lw_params_crc(const struct lw_params *params);
+
 /** True if going from one set to the other makes the index invalid. */
 bool lw_params_need_index(const struct lw_params *from, const struct lw_params *to);
 

@@ -177,6 +177,7 @@ struct lw_device {
 	struct lw_params active;
 	struct lw_params staged;
 	struct lw_derived derived; /**< of the active set */
+	uint32_t active_crc;       /**< of the active set: lw_params_crc() */
 	struct lw_set_copy set_copy;
 	struct lw_lock lock; /**< of the active set's lock_code */
 
