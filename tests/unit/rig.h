@@ -9,6 +9,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <unity.h>
 
@@ -30,8 +31,9 @@ struct rig {
 	struct lw_derived derived;
 	struct lw_controller own;
 	struct lw_device device;
-	struct lw_store store;            /**< of the device */
-	struct lw_controller *controller; /**< `own`, or that of `device` */
+	struct lw_store store;                             /**< of the device */
+	uint8_t slots[LW_STORE_SLOTS][LW_STORE_SLOT_SIZE]; /**< what its host keeps, written */
+	struct lw_controller *controller;                  /**< `own`, or that of `device` */
 	bool with_device;
 
 	int32_t carriage_usteps;
@@ -241,6 +243,7 @@ static inline void rig_prepare(int32_t carriage_usteps)
 		.hysteresis_usteps = 50,
 		.now_us = 5000000,
 	};
+	memset(rig.slots, 0xFF, sizeof(rig.slots)); /* erased */
 	lw_store_init(&rig.store);
 }
 
@@ -287,14 +290,19 @@ static inline void rig_follow_to(int32_t usteps, int carriage_direction, int dru
 	TEST_FAIL_MESSAGE("the carriage never came there");
 }
 
-/** Do the write to the storage that is due. @return its slot, or -1 if there is none */
+/** Do the write to the storage that is due; without an error it is kept in rig.slots.
+ *  @return its slot, or -1 if there is none */
 static inline int rig_write_slot(int result)
 {
 	uint8_t bytes[LW_STORE_SLOT_SIZE];
 	unsigned int slot;
+	const size_t length = lw_device_begin_write(&rig.device, &slot, bytes);
 
-	if (lw_device_begin_write(&rig.device, &slot, bytes) == 0) {
+	if (length == 0) {
 		return -1;
+	}
+	if (result == 0) {
+		memcpy(rig.slots[slot], bytes, length);
 	}
 	lw_device_end_write(&rig.device, result);
 	return (int)slot;

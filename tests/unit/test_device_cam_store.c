@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* The cam table in force is stored, and the next power-up begins with it. */
 #include "cam_rig.h"
+#include "storage_rig.h"
 
 static const struct lw_cam_row hill_rows[] = {{0, 0}, {1000, 1500}, {3000, -500}, {4000, 0}};
 static const struct lw_cam_row pit_rows[] = {{0, 0}, {500, -900}, {2000, 0}};
 static struct lw_cam_table hill;
 static struct lw_cam_table pit;
-static uint8_t slots[LW_STORE_SLOTS][LW_STORE_SLOT_SIZE];
 
 void setUp(void)
 {
@@ -15,7 +15,6 @@ void setUp(void)
 	hill = CAM_TABLE(hill_rows);
 	hill.version = 7;
 	pit = CAM_TABLE(pit_rows);
-	memset(slots, 0xFF, sizeof(slots));
 	TEST_ASSERT_EQUAL_INT(LW_STORE_JOURNAL, rig_write_slot(0)); /* the power-up's */
 }
 
@@ -23,47 +22,24 @@ void tearDown(void)
 {
 }
 
-/** Do the write that is due. @return its slot, or -1 */
-static int write_due(int result)
+static void restart(void)
 {
-	uint8_t bytes[LW_STORE_SLOT_SIZE];
-	unsigned int slot;
-	const size_t length = lw_device_begin_write(&rig.device, &slot, bytes);
-
-	if (length == 0) {
-		return -1;
-	}
-	if (result == 0) {
-		memcpy(slots[slot], bytes, length);
-	}
-	lw_device_end_write(&rig.device, result);
-	return (int)slot;
-}
-
-static void power_cut(void)
-{
-	const struct lw_inputs inputs = rig_inputs();
-
-	lw_store_init(&rig.store);
-	for (unsigned int slot = 0; slot < LW_STORE_SLOTS; slot++) {
-		lw_store_load(&rig.store, slot, slots[slot], sizeof(slots[slot]));
-	}
-	lw_device_init(&rig.device, &config, &inputs, rig.now_us, rig.now_us);
+	power_cut();
 	rig_ticks(300);
 }
 
 static void test_the_table_in_force_is_stored_and_there_at_power_up(void)
 {
 	check_in(hill);
-	TEST_ASSERT_EQUAL_INT(-1, write_due(0)); /* in force, not before */
+	TEST_ASSERT_EQUAL_INT(-1, rig_write_slot(0)); /* in force, not before */
 	command(LW_COMMAND_CAM_ACTIVATE);
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_stored);
-	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM, write_due(0));
+	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM, rig_write_slot(0));
 	TEST_ASSERT_EQUAL_INT32(1, status()->cam_stored);
 	use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
 	command(LW_COMMAND_SAVE);
-	TEST_ASSERT_EQUAL_INT(LW_STORE_PARAMS, write_due(0));
-	power_cut();
+	TEST_ASSERT_EQUAL_INT(LW_STORE_PARAMS, rig_write_slot(0));
+	restart();
 	assert_banks(LW_CAM_BANK_STATE_ACTIVE, LW_CAM_BANK_STATE_EMPTY);
 	TEST_ASSERT_EQUAL_MEMORY(&hill, &rig.store.cam_banks[0].table, sizeof(hill));
 	TEST_ASSERT_EQUAL_INT32(1, status()->cam_stored);
@@ -75,15 +51,15 @@ static void test_the_table_in_force_is_stored_and_there_at_power_up(void)
 	rig_drive(3500);
 	assert_banks(LW_CAM_BANK_STATE_READY, LW_CAM_BANK_STATE_ACTIVE);
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_stored);
-	TEST_ASSERT_EQUAL_INT(-1, write_due(0));
+	TEST_ASSERT_EQUAL_INT(-1, rig_write_slot(0));
 	rig_rest();
-	for (int slot; (slot = write_due(0)) >= 0;) {
+	for (int slot; (slot = rig_write_slot(0)) >= 0;) {
 		TEST_ASSERT_LESS_THAN_INT(LW_STORE_CAM, slot); /* the log does not wait */
 	}
 	command(LW_COMMAND_STOP);
-	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM + 1, write_due(0));
+	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM + 1, rig_write_slot(0));
 	TEST_ASSERT_EQUAL_INT32(1, status()->cam_stored);
-	power_cut();
+	restart();
 	assert_banks(LW_CAM_BANK_STATE_READY, LW_CAM_BANK_STATE_ACTIVE);
 	TEST_ASSERT_EQUAL_INT32(3, status()->cam_rows);
 }
@@ -91,38 +67,40 @@ static void test_the_table_in_force_is_stored_and_there_at_power_up(void)
 static void test_a_damaged_table_leaves_the_one_before(void)
 {
 	put_in_force(hill);
-	(void)write_due(0);
+	(void)rig_write_slot(0);
 	put_in_force(pit);
-	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM + 1, write_due(0));
-	slots[LW_STORE_CAM + 1][50] ^= 8;
-	power_cut();
+	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM + 1, rig_write_slot(0));
+	rig.slots[LW_STORE_CAM + 1][50] ^= 8;
+	restart();
 	assert_banks(LW_CAM_BANK_STATE_ACTIVE, LW_CAM_BANK_STATE_EMPTY);
 	TEST_ASSERT_EQUAL_INT64(7, status()->cam_version);
 	TEST_ASSERT_EQUAL_INT32(LW_SLOT_STATE_GOOD, status()->slot_4);
 	TEST_ASSERT_EQUAL_INT32(LW_SLOT_STATE_DAMAGED, status()->slot_5);
 	/* And none at all: there is nothing to follow, and it says so. */
-	slots[LW_STORE_CAM][50] ^= 8;
-	power_cut();
+	rig.slots[LW_STORE_CAM][50] ^= 8;
+	restart();
 	assert_banks(LW_CAM_BANK_STATE_EMPTY, LW_CAM_BANK_STATE_EMPTY);
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_rows);
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_stored);
 	TEST_ASSERT_EQUAL_INT32(LW_SLOT_STATE_DAMAGED, status()->slot_4);
-	TEST_ASSERT_EQUAL_UINT16(LW_EVENT_SLOT_DAMAGED,
-				 rig.store.log.records[rig.store.log.newest - 1].event);
-	TEST_ASSERT_EQUAL_INT32(LW_STORE_CAM + 1,
-				rig.store.log.records[rig.store.log.newest - 1].detail);
+	/* The slot's event, and after it the power-up's. */
+	const struct lw_log *log = &rig.store.log;
+	const struct lw_log_record *damaged = &log->records[(log->newest - 1) % LW_LOG_RECORDS];
+
+	TEST_ASSERT_EQUAL_UINT16(LW_EVENT_SLOT_DAMAGED, damaged->event);
+	TEST_ASSERT_EQUAL_INT32(LW_STORE_CAM + 1, damaged->detail);
 }
 
 static void test_a_table_that_could_not_be_stored(void)
 {
 	put_in_force(hill);
-	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM, write_due(-EIO));
+	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM, rig_write_slot(-EIO));
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_stored);
 	assert_banks(LW_CAM_BANK_STATE_ACTIVE, LW_CAM_BANK_STATE_EMPTY);
-	TEST_ASSERT_EQUAL_INT(-1, write_due(0));
+	TEST_ASSERT_EQUAL_INT(-1, rig_write_slot(0));
 	/* The next one is stored again. */
 	put_in_force(pit);
-	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM, write_due(0));
+	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM, rig_write_slot(0));
 	TEST_ASSERT_EQUAL_INT32(1, status()->cam_stored);
 }
 
@@ -136,7 +114,7 @@ static void test_another_table_in_force_during_the_write(void)
 	put_in_force(pit);
 	lw_device_end_write(&rig.device, 0);
 	TEST_ASSERT_EQUAL_INT32(0, status()->cam_stored);
-	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM + 1, write_due(0));
+	TEST_ASSERT_EQUAL_INT(LW_STORE_CAM + 1, rig_write_slot(0));
 	TEST_ASSERT_EQUAL_INT32(1, status()->cam_stored);
 }
 
@@ -147,15 +125,15 @@ static void test_a_stored_table_that_the_stored_parameters_do_not_allow(void)
 	TEST_ASSERT_EQUAL_INT(0, write_pair(LW_ADDRESS_CAM_STEPS_PER_S_MAX, 110000));
 	use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
 	command(LW_COMMAND_SAVE);
-	(void)write_due(0);
+	(void)rig_write_slot(0);
 	/* hill needs 90,000 steps/s at the top edge rate of now, and twice that of the stored. */
 	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_CAM_SLAVE_UNITS, 2));
 	command(LW_COMMAND_APPLY);
 	hill.rows[1].slave = 2000;
 	put_in_force(hill);
-	while (write_due(0) >= 0) {
+	while (rig_write_slot(0) >= 0) {
 	}
-	power_cut();
+	restart();
 	assert_banks(LW_CAM_BANK_STATE_ACTIVE, LW_CAM_BANK_STATE_EMPTY);
 	TEST_ASSERT_TRUE(status()->launch_inhibit >> LW_LAUNCH_INHIBIT_CAM & 1);
 	TEST_ASSERT_EQUAL_INT32(LW_REASON_CAM_STEP_RATE, status()->cam_reason);

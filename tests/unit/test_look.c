@@ -1,60 +1,13 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What needs a look at the rope: told until it has been looked at, also after a power cut. */
 #include <errno.h>
-#include <string.h>
 
 #include <unity.h>
 
 #include "cases.h"
-#include "device_rig.h"
+#include "storage_rig.h"
 
 #define S_US 1000000u
-
-static uint8_t slots[LW_STORE_SLOTS][LW_STORE_SLOT_SIZE];
-
-/** Do the write that is due. @return its slot, or -1 */
-static int write_due(void)
-{
-	uint8_t bytes[LW_STORE_SLOT_SIZE];
-	unsigned int slot;
-	const size_t length = lw_device_begin_write(&rig.device, &slot, bytes);
-
-	if (length == 0) {
-		return -1;
-	}
-	memcpy(slots[slot], bytes, length);
-	lw_device_end_write(&rig.device, 0);
-	return (int)slot;
-}
-
-/** Ticks with a storage that writes at once what it may. */
-static void run(int ticks)
-{
-	for (int i = 0; i < ticks; i++) {
-		rig_tick();
-		(void)write_due();
-	}
-}
-
-static void run_to(enum lw_state state)
-{
-	for (int i = 0; i < 60000 && rig.controller->state != state; i++) {
-		run(1);
-	}
-	TEST_ASSERT_EQUAL_INT(state, rig.controller->state);
-}
-
-static void power_cut(void)
-{
-	const struct lw_inputs inputs = rig_inputs();
-
-	lw_store_init(&rig.store);
-	for (unsigned int slot = 0; slot < LW_STORE_SLOTS; slot++) {
-		lw_store_load(&rig.store, slot, slots[slot], sizeof(slots[slot]));
-	}
-	rig.drum_edges_per_s = 0;
-	lw_device_init(&rig.device, &config, &inputs, rig.now_us, rig.now_us);
-}
 
 static void index_again(void)
 {
@@ -82,7 +35,6 @@ static bool event_is_kept(enum lw_event event)
 void setUp(void)
 {
 	rig_prepare(0);
-	memset(slots, 0xFF, sizeof(slots));
 	power_up(NULL, 0);
 	index_again();
 	TEST_ASSERT_TRUE(permitted());
@@ -220,7 +172,7 @@ static void test_a_loss_of_synchronization_survives_a_power_cut(void)
 	while (!rig.controller->speed.at_rest) {
 		rig_tick();
 	}
-	TEST_ASSERT_EQUAL_INT(LW_STORE_LOOK, write_due() & ~1); /* at once, and first */
+	TEST_ASSERT_EQUAL_INT(LW_STORE_LOOK, rig_write_slot(0) & ~1); /* at once, and first */
 	TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
 	before = *status();
 	power_cut();
@@ -409,11 +361,11 @@ static void test_nothing_is_written_while_the_drum_turns_in_any_state(void)
 		command(modes[i] == LW_MODE_TRACK ? LW_COMMAND_STOP : LW_COMMAND_SAVE);
 		for (int k = 0; k < 20000; k++) {
 			rig_tick();
-			TEST_ASSERT_EQUAL_INT(-1, write_due());
+			TEST_ASSERT_EQUAL_INT(-1, rig_write_slot(0));
 		}
 		rig.drum_edges_per_s = 0;
 		rig_ticks(300);
-		TEST_ASSERT_NOT_EQUAL(-1, write_due());
+		TEST_ASSERT_NOT_EQUAL(-1, rig_write_slot(0));
 	}
 	/* Unindexed, and in a fault. */
 	power_up(NULL, 0);
@@ -422,7 +374,7 @@ static void test_nothing_is_written_while_the_drum_turns_in_any_state(void)
 		rig.drum_edges_per_s = -200;
 		for (int k = 0; k < 5000; k++) {
 			rig_tick();
-			TEST_ASSERT_TRUE(k < 100 || write_due() == -1);
+			TEST_ASSERT_TRUE(k < 100 || rig_write_slot(0) == -1);
 		}
 		TEST_ASSERT_EQUAL_INT(fault ? LW_STATE_FAULT : LW_STATE_UNINDEXED,
 				      rig.controller->state);
@@ -455,7 +407,7 @@ static void write_while_turning(int during, int after)
 	unsigned int slot;
 
 	rig_rest();
-	while (write_due() >= 0) {
+	while (rig_write_slot(0) >= 0) {
 	}
 	command(LW_COMMAND_STOP);
 	rig.now_us += 120 * (uint64_t)S_US;
@@ -502,7 +454,7 @@ static void test_looks_do_not_wear_the_flash_out(void)
 	rig.drum_edges_per_s = 40;
 	for (int i = 0; i < 600000; i++) {
 		rig_tick();
-		for (int slot; (slot = write_due()) >= 0;) {
+		for (int slot; (slot = rig_write_slot(0)) >= 0;) {
 			writes += slot >= LW_STORE_LOOK ? 1 : 0;
 		}
 	}

@@ -1,56 +1,17 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Where the rope goes on: kept over a power cut, taken up after an indexing. */
-#include <string.h>
-
 #include <unity.h>
 
 #include "cases.h"
-#include "device_rig.h"
 #include "law_check.h"
 #include "lw/motion/move.h"
+#include "storage_rig.h"
 
-static uint8_t slots[LW_STORE_SLOTS][LW_STORE_SLOT_SIZE];
-
-/** Ticks with a storage that writes at once what it may. @return writes of what needs a look */
-static int run(int ticks)
+/** A power cut, until the drum counts as resting. */
+static void restart(void)
 {
-	int looks = 0;
-
-	for (int i = 0; i < ticks; i++) {
-		uint8_t bytes[LW_STORE_SLOT_SIZE];
-		unsigned int slot;
-		size_t length;
-
-		rig_tick();
-		length = lw_device_begin_write(&rig.device, &slot, bytes);
-		if (length > 0) {
-			memcpy(slots[slot], bytes, length);
-			lw_device_end_write(&rig.device, 0);
-			looks += slot >= LW_STORE_LOOK;
-		}
-	}
-	return looks;
-}
-
-static void run_to(enum lw_state state)
-{
-	for (int i = 0; i < 60000 && rig.controller->state != state; i++) {
-		(void)run(1);
-	}
-	TEST_ASSERT_EQUAL_INT(state, rig.controller->state);
-}
-
-static void power_cut(void)
-{
-	const struct lw_inputs inputs = rig_inputs();
-
-	lw_store_init(&rig.store);
-	for (unsigned int slot = 0; slot < LW_STORE_SLOTS; slot++) {
-		lw_store_load(&rig.store, slot, slots[slot], sizeof(slots[slot]));
-	}
-	rig.drum_edges_per_s = 0;
-	lw_device_init(&rig.device, &config, &inputs, rig.now_us, rig.now_us);
-	(void)run(300);
+	power_cut();
+	run(300);
 }
 
 static void follow_again(void)
@@ -63,9 +24,9 @@ static void follow_again(void)
 static void wind(int edges_per_s, int ms)
 {
 	rig.drum_edges_per_s = edges_per_s;
-	(void)run(ms);
+	run(ms);
 	rig.drum_edges_per_s = 0;
-	(void)run(500);
+	run(500);
 }
 
 /** Stage more with it, then follow the drum with `resume`. */
@@ -75,13 +36,12 @@ static void begin(void)
 	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_INDEX_RATE_EDGES_PER_S, 20000));
 	command(LW_COMMAND_APPLY);
 	command(LW_COMMAND_SAVE);
-	(void)run(10);
+	run(10);
 	follow_again();
 }
 
 void setUp(void)
 {
-	memset(slots, 0, sizeof(slots));
 	rig_prepare(0);
 	power_up(NULL, 0);
 }
@@ -120,7 +80,7 @@ static void test_every_part_of_the_state_is_taken_up(void)
 					: lw_law_m(&law) > 0 ? -1
 							     : 1,
 					status()->resume_direction);
-		power_cut();
+		restart();
 		TEST_ASSERT_FALSE(flag(LW_FLAG_RESUME_DOUBTFUL));
 		follow_again();
 		assert_goes_on(&law);
@@ -136,10 +96,10 @@ static void test_it_is_in_the_log(void)
 
 	begin();
 	wind(40000, 1000);
-	power_cut();
+	restart();
 	command(LW_COMMAND_INDEX);
 	for (int i = 0; i < 60000 && rig.controller->resume.taken_up == 0; i++) {
-		(void)run(1);
+		run(1);
 	}
 	for (int back = 0;; back++) {
 		TEST_ASSERT_TRUE(back < 3);
@@ -161,7 +121,7 @@ static void test_without_the_parameter_nothing_is_kept(void)
 	command(LW_COMMAND_STOP);
 	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_RESUME, 0));
 	command(LW_COMMAND_APPLY);
-	(void)run(10);
+	run(10);
 	TEST_ASSERT_EQUAL_INT32(0, status()->resume_direction);
 	TEST_ASSERT_EQUAL_INT32(0, status()->resume_position_um);
 	follow_again();
@@ -169,8 +129,8 @@ static void test_without_the_parameter_nothing_is_kept(void)
 	/* What is stored belongs to a set that says 0 now. */
 	command(LW_COMMAND_STOP);
 	command(LW_COMMAND_SAVE);
-	(void)run(500);
-	power_cut();
+	run(500);
+	restart();
 	TEST_ASSERT_EQUAL_INT32(0, status()->resume_direction);
 }
 
@@ -190,11 +150,11 @@ static void test_a_stored_place_of_another_set_is_not_used(void)
 	begin();
 	wind(40000, 1000);
 	command(LW_COMMAND_STOP);
-	(void)run(500);
+	run(500);
 	/* The stored set says another pitch, the record is of the one before. */
 	rig.store.params.pitch_um = 11000;
-	(void)lw_param_record_encode(&rig.store.params, 99, slots[LW_STORE_PARAMS]);
-	power_cut();
+	(void)lw_param_record_encode(&rig.store.params, 99, rig.slots[LW_STORE_PARAMS]);
+	restart();
 	TEST_ASSERT_EQUAL_INT32(11000, rig.device.active.pitch_um);
 	TEST_ASSERT_EQUAL_INT32(0, status()->resume_direction);
 	TEST_ASSERT_EQUAL_INT32(0, rig.controller->moving.shift_usteps);
@@ -206,13 +166,13 @@ static void test_what_makes_it_doubtful(void)
 		setUp();
 		begin();
 		wind(40000, 1000);
-		power_cut();
+		restart();
 		/* A quarter of a millimetre of carriage. */
 		rig_turn(-61);
-		(void)run(300);
+		run(300);
 		TEST_ASSERT_FALSE(flag(LW_FLAG_RESUME_DOUBTFUL));
 		rig_turn(122);
-		(void)run(300);
+		run(300);
 		TEST_ASSERT_FALSE(flag(LW_FLAG_RESUME_DOUBTFUL));
 		switch (cause) {
 		case 0:
@@ -234,12 +194,12 @@ static void test_what_makes_it_doubtful(void)
 			rig_place(rig.carriage_usteps + 110);
 			break;
 		}
-		(void)run(300);
+		run(300);
 		TEST_ASSERT_EQUAL(cause < 4, flag(LW_FLAG_RESUME_DOUBTFUL));
 		command(LW_COMMAND_INDEX);
 		run_to(LW_STATE_TRACKING);
 		TEST_ASSERT_EQUAL_UINT16(0, rig.controller->resume.taken_up);
-		(void)run(10);
+		run(10);
 		TEST_ASSERT_FALSE(flag(LW_FLAG_RESUME_DOUBTFUL)); /* another place is kept */
 	}
 }
@@ -248,10 +208,10 @@ static void test_a_doubt_outlasts_a_power_cut(void)
 {
 	begin();
 	wind(40000, 1000);
-	power_cut();
+	restart();
 	rig_turn(500);
-	(void)run(500);
-	power_cut();
+	run(500);
+	restart();
 	TEST_ASSERT_TRUE(flag(LW_FLAG_RESUME_DOUBTFUL));
 	TEST_ASSERT_EQUAL_INT32(1, status()->resume_direction);
 }
@@ -261,14 +221,14 @@ static void test_what_is_not_at_rest_or_no_screw_is_not_kept(void)
 	begin();
 	wind(40000, 1000);
 	rig.drum_edges_per_s = 10000;
-	(void)run(300);
+	run(300);
 	TEST_ASSERT_EQUAL_INT32(0, status()->resume_direction);
 	/* A stop at speed loses the place. */
 	command(LW_COMMAND_STOP);
 	rig.drum_edges_per_s = 0;
-	(void)run(500);
+	run(500);
 	TEST_ASSERT_EQUAL_INT32(0, status()->resume_direction);
-	power_cut();
+	restart();
 	TEST_ASSERT_EQUAL_INT32(0, status()->resume_direction);
 }
 
@@ -287,12 +247,12 @@ static void test_a_place_outside_of_the_trimmed_sweep(void)
 			rig_follow_to(0, toward, 40000);
 			rig_follow_to(toward * 7900, inward ? -toward : toward, 20000);
 			rig.drum_edges_per_s = 0;
-			(void)run(500);
+			run(500);
 
 			const struct lw_law law = rig.controller->motion.law;
 
 			TEST_ASSERT_TRUE(law.u != 0);
-			power_cut();
+			restart();
 			follow_again();
 			TEST_ASSERT_EQUAL_UINT16(1, rig.controller->resume.taken_up);
 			TEST_ASSERT_TRUE(law_on_orbit(&rig.controller->motion.law,
@@ -307,8 +267,8 @@ static void test_a_place_outside_of_the_trimmed_sweep(void)
 			rig_follow_to(0, toward, 40000);
 			rig_follow_to(toward * 7990, inward ? -toward : toward, 20000);
 			rig.drum_edges_per_s = 0;
-			(void)run(500);
-			power_cut();
+			run(500);
+			restart();
 			(void)write_register(side == LW_PLUS ? LW_ADDRESS_TRIM_PLUS_UM
 							     : LW_ADDRESS_TRIM_MINUS_UM,
 					     -toward * 1400);
@@ -328,8 +288,9 @@ static void test_it_does_not_wear_the_flash_out(void)
 	/* A drum that creeps below its rest: another place with every tick. */
 	begin();
 	rig.drum_edges_per_s = 40;
-	for (int i = 0; i < 600; i++) {
-		writes += run(1000);
+	for (int i = 0; i < 600000; i++) {
+		rig_tick();
+		writes += rig_write_slot(0) >= LW_STORE_LOOK;
 	}
 	TEST_ASSERT_INT_WITHIN(2, 20, writes); /* in ten minutes */
 }
@@ -369,7 +330,7 @@ static struct lw_law take_up(int32_t m, int32_t u)
 	struct lw_resume *resume = &rig.controller->resume;
 
 	command(LW_COMMAND_STOP);
-	(void)run(10);
+	run(10);
 	TEST_ASSERT_EQUAL_INT(LW_STATE_READY, rig.controller->state);
 	resume->m = m;
 	resume->u = u;
@@ -446,20 +407,20 @@ static void test_what_is_kept_is_where_the_rope_is(void)
 	wind(40000, 1000);
 	assert_kept_here();
 	rig_turn(2); /* so slowly that it counts as rest */
-	(void)run(1);
+	run(1);
 	assert_kept_here();
 
 	/* Away and back by as many edges. */
 	rig_drive(4000);
 	rig_drive(-4000);
 	TEST_ASSERT_FALSE(rig.controller->resume.known);
-	(void)run(500);
+	run(500);
 	assert_kept_here();
 
 	/* Elsewhere, and the drum has not turned: jogged there. */
 	lw_controller_jog(rig.controller, rig.carriage_usteps > 0 ? -1 : 1, rig.now_us);
 	run_to(LW_STATE_TRACKING);
-	(void)run(1);
+	run(1);
 	assert_kept_here();
 	TEST_ASSERT_EQUAL_UINT16(0, rig.controller->resume.taken_up);
 }
@@ -471,11 +432,11 @@ static void test_a_carriage_that_was_moved_is_found_once(void)
 		begin();
 		wind(40000, 1000);
 		command(LW_COMMAND_STOP);
-		(void)run(10);
+		run(10);
 		rig_place(rig.carriage_usteps + (far ? 110 : 90));
 		follow_again();
 		TEST_ASSERT_EQUAL_UINT16(far ? 0 : 1, rig.controller->resume.taken_up);
-		(void)run(10);
+		run(10);
 		/* From where it has been found it is taken up. */
 		follow_again();
 		TEST_ASSERT_EQUAL_UINT16(far ? 1 : 2, rig.controller->resume.taken_up);

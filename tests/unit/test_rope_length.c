@@ -6,8 +6,8 @@
 
 #include <unity.h>
 
-#include "device_rig.h"
 #include "law_check.h"
+#include "storage_rig.h"
 
 #define PI       3.14159265358979323846
 #define CORE_UM  380000u
@@ -17,8 +17,6 @@
 static const int32_t width_um = 164941; /* between the far points of the factory set */
 
 static struct lw_rope_geometry geometry;
-
-static uint8_t slots[LW_STORE_SLOTS][LW_STORE_SLOT_SIZE];
 
 static void describe(struct lw_params *params)
 {
@@ -54,7 +52,6 @@ static void wind(int64_t edges)
 void setUp(void)
 {
 	rig_prepare(0);
-	memset(slots, 0, sizeof(slots));
 	geometry = lw_rope_geometry(CORE_UM, ROPE_UM, PERMILLE, width_um);
 	geometry.edges = 2880;
 	geometry.revs = 1;
@@ -277,42 +274,32 @@ static void test_lost_edges_make_it_doubtful_until_it_is_told_anew(void)
 /** Do the writes that are due. @return how many */
 static int write_all(void)
 {
-	uint8_t bytes[LW_STORE_SLOT_SIZE];
-	unsigned int slot;
 	int writes = 0;
 
-	for (size_t length; (length = lw_device_begin_write(&rig.device, &slot, bytes)) > 0;) {
-		memcpy(slots[slot], bytes, length);
-		lw_device_end_write(&rig.device, 0);
+	while (rig_write_slot(0) >= 0) {
 		writes++;
 		rig_tick();
 	}
 	return writes;
 }
 
-static void power_cut(void)
+static void restart(void)
 {
-	const struct lw_inputs inputs = rig_inputs();
-
-	lw_store_init(&rig.store);
-	for (unsigned int slot = 0; slot < LW_STORE_SLOTS; slot++) {
-		lw_store_load(&rig.store, slot, slots[slot], sizeof(slots[slot]));
-	}
-	lw_device_init(&rig.device, &config, &inputs, rig.now_us, rig.now_us);
+	power_cut();
 	rig_ticks(300);
 }
 
 static void test_a_power_cut_keeps_it_and_makes_it_doubtful(void)
 {
 	power_up_described();
-	(void)lw_param_record_encode(&rig.device.active, 1, slots[0]);
+	(void)lw_param_record_encode(&rig.device.active, 1, rig.slots[0]);
 	tell(950000);
 	wind(-345678);
 
 	const int32_t on_drum_mm = status()->rope_on_drum_mm;
 
 	TEST_ASSERT_TRUE(write_all() > 0);
-	power_cut();
+	restart();
 	TEST_ASSERT_EQUAL_INT32(on_drum_mm, status()->rope_on_drum_mm);
 	TEST_ASSERT_EQUAL_INT32(950000 - on_drum_mm, status()->rope_out_mm);
 	TEST_ASSERT_EQUAL_INT32(0, status()->rope_mm);
@@ -321,12 +308,12 @@ static void test_a_power_cut_keeps_it_and_makes_it_doubtful(void)
 	TEST_ASSERT_EQUAL_INT32(950000, status()->rope_on_drum_mm);
 	/* Once more, and across a set that does not describe the drum. */
 	TEST_ASSERT_TRUE(write_all() > 0);
-	(void)lw_param_record_encode(&lw_params_default, 1, slots[0]);
-	power_cut();
+	(void)lw_param_record_encode(&lw_params_default, 1, rig.slots[0]);
+	restart();
 	TEST_ASSERT_FALSE(flag(LW_FLAG_ROPE_DOUBTFUL));
 	TEST_ASSERT_EQUAL_INT32(0, status()->rope_on_drum_mm);
-	(void)lw_param_record_encode(&rig.device.active, 1, slots[0]);
-	power_cut();
+	(void)lw_param_record_encode(&rig.device.active, 1, rig.slots[0]);
+	restart();
 	(void)write_all();
 	TEST_ASSERT_EQUAL_INT32(950000, rig.controller->rope_length.told_mm);
 }
