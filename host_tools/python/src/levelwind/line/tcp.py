@@ -2,13 +2,15 @@
 """Modbus TCP: the answer to a request, found by its transaction."""
 
 import socket
+import struct
 import time
 
 from levelwind.errors import ToolError
 from levelwind.line.port import Line, tcp_address
 from levelwind.line.rtu import EXCEPTION_BIT, Heard, RtuClient, sealed
 
-HEAD_SIZE = 7
+HEAD = struct.Struct(">HHHB")
+"""Transaction, protocol (0), length of unit and PDU, unit."""
 LENGTH_MAX = 254  # unit and PDU
 GATEWAY_EXCEPTIONS = (0x0A, 0x0B)
 """Path unavailable, target did not answer: the controller has said nothing."""
@@ -42,10 +44,10 @@ class TcpClient(RtuClient):
         del addr
         self._transaction = self._transaction + 1 & 0xFFFF
         self._request = bytes(request[:-2])
-        head = [self._transaction, 0, len(self._request)]
+        head = HEAD.pack(self._transaction, 0, len(self._request), self._request[0])
         try:
             self.socket.settimeout(self.line.timeout_s)
-            self.socket.sendall(b"".join(n.to_bytes(2, "big") for n in head) + self._request)
+            self.socket.sendall(head + self._request[1:])
         except OSError:
             self._gone()
         return len(request)
@@ -81,16 +83,15 @@ class TcpClient(RtuClient):
 
     def _next_frame(self) -> tuple[int, bytes] | None:
         """Transaction, and unit with PDU."""
-        if len(self._received) < HEAD_SIZE:
+        if len(self._received) < HEAD.size:
             return None
-        transaction, protocol, length = (
-            int.from_bytes(self._received[at : at + 2], "big") for at in (0, 2, 4)
-        )
+        transaction, protocol, length, unit = HEAD.unpack_from(self._received)
         if protocol or not 3 <= length <= LENGTH_MAX:
             self.close()
             raise ToolError(f"{self.line.port} is no Modbus TCP server: what came is no frame.")
-        if len(self._received) < 6 + length:
+        end = HEAD.size + length - 1
+        if len(self._received) < end:
             return None
-        frame = bytes(self._received[6 : 6 + length])
-        del self._received[: 6 + length]
+        frame = bytes([unit]) + self._received[HEAD.size : end]
+        del self._received[:end]
         return transaction, frame

@@ -3,16 +3,14 @@
 
 import asyncio
 import ipaddress
-import struct
 from contextlib import suppress
 
 from levelwind.errors import ToolError
 from levelwind.line.rtu import EXCEPTION_BIT
-from levelwind.line.tcp import GATEWAY_EXCEPTIONS, LENGTH_MAX
+from levelwind.line.tcp import GATEWAY_EXCEPTIONS, HEAD, LENGTH_MAX
 from levelwind.serve.owner import Answer, Outcome, PortOwner
 
 Network = ipaddress.IPv4Network | ipaddress.IPv6Network
-HEAD = struct.Struct(">HHHB")
 CLIENTS_MAX = 64
 IDLE_S = 600.0
 """A client that has said nothing for so long is gone: a cable pulled tells nobody."""
