@@ -14,16 +14,18 @@ set(LW_CORE_SOURCES
   src/control/controller.c
   src/control/drum_speed.c
   src/control/drum_watch.c
+  src/control/fault.c
+  src/control/hand_trim.c
   src/control/homing.c
   src/control/jogging.c
   src/control/limit_switch.c
-  src/control/los.c
+  src/control/los_judge.c
+  src/control/los_record.c
   src/control/modes.c
   src/control/moving.c
   src/control/params.c
   src/control/params_check.c
   src/control/params_units.c
-  src/control/hand_trim.c
   src/control/reacquire.c
   src/control/resume.c
   src/control/rope_length.c

@@ -116,7 +116,7 @@ BROKEN = {
         "status",
     ),
     "a waiting correction is changed without withdrawing it": Broken(
-        "lib/lw_core/src/control/tracking.c",
+        "lib/lw_core/src/control/los_judge.c",
         "	motion->requests &= (uint8_t)~LW_MOTION_REQUEST_CORRECTION;\n"
         "	motion->request_correction_usteps -= error;",
         "	motion->request_correction_usteps -= error;",

@@ -36,21 +36,21 @@ def test_a_short_campaign_holds():
 # What is broken: file, right text, wrong text, in launches with which fault, what must notice.
 MUTANTS = {
     "no LOS of type 1 is told": (
-        "control/tracking.c",
+        "control/los_judge.c",
         "if (!controller->los.triggered[side]) {\n\t\t\tlw_los_note(",
         "if (false) {\n\t\t\tlw_los_note(",
         "stuck_switch",
         Invariant.SILENT,
     ),
     "no LOS of type 2 is told": (
-        "control/tracking.c",
+        "control/los_judge.c",
         "lw_los_note(&controller->los.los2[side], ",
         "(void)(controller->los.los2[side].set, ",
         "slip",
         Invariant.SILENT,
     ),
     "no LOS of type 2 is noticed": (
-        "control/tracking.c",
+        "control/los_judge.c",
         "\tif (error <= tolerance &&",
         "\tif (error <= 100000 || error <= tolerance &&",
         "stall",
@@ -58,7 +58,7 @@ MUTANTS = {
         Invariant.RECOVERY,
     ),
     "a LOS is not made good": (
-        "control/tracking.c",
+        "control/los_judge.c",
         "motion->request_correction_usteps -= error;",
         "motion->request_correction_usteps -= error / 4;",
         "stall",

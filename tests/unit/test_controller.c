@@ -859,6 +859,33 @@ static void test_a_law_that_was_changed_is_mended_and_told(void)
 	}
 }
 
+static void test_what_has_ended_can_be_acknowledged(void)
+{
+	static const enum lw_fault ended[] = {LW_FAULT_INDEX_NO_SWITCH,
+					      LW_FAULT_INDEX_WRONG_SWITCH,
+					      LW_FAULT_INDEX_SPAN,
+					      LW_FAULT_BACK_OFF_NO_RELEASE,
+					      LW_FAULT_LOS_LIMIT,
+					      LW_FAULT_REACQUIRE_NO_SWITCH,
+					      LW_FAULT_REACQUIRE_WRONG_SWITCH};
+
+	/* Whatever else is wrong: the cause of another fault keeps none of these. */
+	rig_power_up();
+	FOR_EACH_SIDE(side) {
+		rig_set_switch(side, RIG_SWITCH_SHORTED);
+		lw_controller_overtravel(rig.controller, side, true);
+	}
+	rig_ticks(1000);
+	for (size_t i = 0; i < sizeof(ended) / sizeof(ended[0]); i++) {
+		rig.controller->state = LW_STATE_FAULT;
+		rig.controller->fault = ended[i];
+		TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_clear_fault(rig.controller, &why));
+		lw_controller_clear_fault(rig.controller);
+		TEST_ASSERT_EQUAL_INT(LW_FAULT_NONE, rig.controller->fault);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_UNINDEXED, rig.controller->state);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -907,5 +934,6 @@ int main(void)
 	RUN_TEST(test_jog_of_an_indexed_carriage_ends_two_microsteps_inside_and_goes_no_farther);
 	RUN_TEST(test_a_long_hold_of_a_jog_is_exact);
 	RUN_TEST(test_a_law_that_was_changed_is_mended_and_told);
+	RUN_TEST(test_what_has_ended_can_be_acknowledged);
 	return UNITY_END();
 }

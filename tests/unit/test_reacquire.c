@@ -188,6 +188,31 @@ static void test_a_trigger_is_taken_up_where_the_drum_comes_back(void)
 	}
 }
 
+/** The switch ahead closes while the drum, and the carriage with it, goes back. */
+static void test_a_trigger_on_the_way_back_is_none(void)
+{
+	FOR_EACH_SIDE(side) {
+		const int toward = lw_side_direction(side);
+
+		setUp();
+		launch(0, toward, 20000);
+		restart();
+		rig_ticks(350);
+		command(LW_COMMAND_REACQUIRE);
+		rig_ticks(150);
+		rig.drum_edges_per_s = -20000;
+		rig_ticks(20);
+		rig_set_switch(side, RIG_SWITCH_ALWAYS);
+		rig_ticks(20);
+		TEST_ASSERT_TRUE(rig.controller->limit[side].active);
+		rig_set_switch(side, RIG_SWITCH_WORKS);
+		rig_ticks(20);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_REACQUIRING, rig.controller->state);
+		rig.drum_edges_per_s = 20000;
+		check_reacquired();
+	}
+}
+
 static void test_a_late_trigger_past_the_reversal_point_is_made_good(void)
 {
 	/* The tick comes so late that the carriage is past the reversal point: brought to it. */
@@ -599,6 +624,7 @@ int main(void)
 	RUN_TEST(test_only_an_index_clears_it);
 	RUN_TEST(test_a_drum_that_comes_back_leads_back);
 	RUN_TEST(test_a_trigger_is_taken_up_where_the_drum_comes_back);
+	RUN_TEST(test_a_trigger_on_the_way_back_is_none);
 	RUN_TEST(test_a_late_trigger_past_the_reversal_point_is_made_good);
 	RUN_TEST(test_what_goes_wrong_is_a_named_fault);
 	RUN_TEST(test_a_switch_that_sticks_behind_is_the_wrong_one);

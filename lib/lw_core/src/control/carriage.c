@@ -28,15 +28,6 @@ void lw_carriage_cut(struct lw_controller *controller)
 	controller->moving.halt_sent = false;
 }
 
-void lw_carriage_fail(struct lw_controller *controller, enum lw_fault fault)
-{
-	lw_carriage_cut(controller);
-	controller->state = LW_STATE_FAULT;
-	controller->fault = fault;
-	controller->indexed = false;
-	controller->on_orbit = false;
-}
-
 struct lw_law_window *lw_carriage_spare_window(struct lw_controller *controller)
 {
 	return controller->motion.window == &controller->windows[0] ? &controller->windows[1]
@@ -95,22 +86,14 @@ int32_t lw_carriage_lag_max_usteps(const struct lw_controller *controller)
 	return lag_usteps < 0 ? -lag_usteps : lag_usteps;
 }
 
+uint32_t lw_carriage_tolerance_edges(const struct lw_controller *controller)
+{
+	const int64_t q16 = (int64_t)controller->derived->switch_tolerance_usteps * LW_USTEP;
+
+	return (uint32_t)(q16 / (4 * (int64_t)controller->derived->ks)) + 1;
+}
+
 bool lw_carriage_moves_toward(int direction, int side)
 {
 	return direction == lw_side_direction(side);
-}
-
-void lw_carriage_clear_fault(struct lw_controller *controller)
-{
-	controller->fault = LW_FAULT_NONE;
-	controller->overspeed_trip = false;
-	for (int side = 0; side < 2; side++) {
-		controller->wiring[side] = controller->limit[side].wiring_fault;
-	}
-	if (controller->state == LW_STATE_FAULT) {
-		controller->state = LW_STATE_UNINDEXED;
-	}
-	if (controller->moving.rest_state == LW_STATE_FAULT) {
-		controller->moving.rest_state = LW_STATE_UNINDEXED; /* a jog is under way */
-	}
 }

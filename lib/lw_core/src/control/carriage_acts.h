@@ -23,12 +23,6 @@ int lw_carriage_busy(struct lw_refusal *why, enum lw_reason reason);
 /** Stop all step pulses now. What the interrupt was asked for is dropped. */
 void lw_carriage_cut(struct lw_controller *controller);
 
-/** Stop with a named fault; the index is lost. */
-void lw_carriage_fail(struct lw_controller *controller, enum lw_fault fault);
-
-/** Acknowledge a fault. The position is unknown afterwards; LOS flags stay. */
-void lw_carriage_clear_fault(struct lw_controller *controller);
-
 /** The window that is not in force, to be filled before it is handed over. */
 struct lw_law_window *lw_carriage_spare_window(struct lw_controller *controller);
 
@@ -52,6 +46,9 @@ int32_t lw_carriage_lag_usteps(const struct lw_controller *controller, int32_t u
 
 /** How far that is at the most now, in the sweep; not negative. */
 int32_t lw_carriage_lag_max_usteps(const struct lw_controller *controller);
+
+/** Edges that lead so far astray that the lay would show it: a quarter of a switch's tolerance. */
+uint32_t lw_carriage_tolerance_edges(const struct lw_controller *controller);
 
 /** The bit of a side, as the motion has it. */
 static inline enum lw_motion_side_bit lw_carriage_side_bit(int side)

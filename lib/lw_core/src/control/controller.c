@@ -4,8 +4,10 @@
 #include <errno.h>
 
 #include "carriage_acts.h"
+#include "fault.h"
 #include "homing.h"
 #include "jogging.h"
+#include "los_judge.h"
 #include "lw/bytes/require.h"
 #include "modes.h"
 #include "moving.h"
@@ -361,42 +363,16 @@ void lw_controller_stop(struct lw_controller *controller)
 	controller->held = true;
 }
 
-/** Does the cause of a fault still stand? */
-static bool cause_present(const struct lw_controller *controller)
-{
-	const struct lw_limit_switch *limit = controller->limit;
-
-	switch (controller->fault) {
-	case LW_FAULT_WIRING_PLUS:
-	case LW_FAULT_WIRING_MINUS:
-		return limit[LW_PLUS].wiring_fault || limit[LW_MINUS].wiring_fault;
-	case LW_FAULT_OVERTRAVEL_PLUS:
-	case LW_FAULT_OVERTRAVEL_MINUS:
-		return controller->overtravel[LW_PLUS] || controller->overtravel[LW_MINUS];
-	case LW_FAULT_BOTH_SWITCHES_ACTIVE:
-		return limit[LW_PLUS].active && limit[LW_MINUS].active;
-	case LW_FAULT_STEPPER_ALARM:
-		return controller->stepper_alarm.on;
-	case LW_FAULT_OVERSPEED:
-		return lw_drum_speed_exceeds(&controller->speed,
-					     controller->params->overspeed_trip_edges_per_s);
-	case LW_FAULT_NONE:
-		/* What is left to acknowledge is a wiring fault that is told beside the state. */
-		return limit[LW_PLUS].wiring_fault || limit[LW_MINUS].wiring_fault;
-	default:
-		return false;
-	}
-}
-
 int lw_controller_allow_clear_fault(const struct lw_controller *controller, struct lw_refusal *why)
 {
-	return cause_present(controller) ? lw_carriage_busy(why, LW_REASON_CAUSE_PRESENT) : 0;
+	return lw_fault_cause_present(controller) ? lw_carriage_busy(why, LW_REASON_CAUSE_PRESENT)
+						  : 0;
 }
 
 void lw_controller_clear_fault(struct lw_controller *controller)
 {
 	LW_REQUIRE(lw_controller_allow_clear_fault(controller, &(struct lw_refusal){0}) == 0);
-	lw_carriage_clear_fault(controller);
+	lw_fault_clear(controller);
 }
 
 int lw_controller_allow_acknowledge_rope(const struct lw_controller *controller,
@@ -504,14 +480,11 @@ void lw_controller_set_trim(struct lw_controller *controller, int32_t trim_plus_
 static void watch_drum(struct lw_controller *controller, uint64_t now_us)
 {
 	struct lw_drum_watch *watch = &controller->drum_watch;
-	const int64_t tolerance_q16 =
-		(int64_t)controller->derived->switch_tolerance_usteps * LW_USTEP;
-	/* A quarter: a bad encoder shall be told before the lay is bad. */
-	const int64_t tolerance_edges = tolerance_q16 / (4 * controller->derived->ks) + 1;
 
 	lw_drum_watch_tick(watch, controller->params, &controller->quadrature,
 			   &controller->encoder_index, (uint32_t)controller->motion.net_edges,
-			   (int32_t)tolerance_edges, told_running(controller), now_us);
+			   (int32_t)lw_carriage_tolerance_edges(controller),
+			   told_running(controller), now_us);
 	if (watch->fault != LW_ENCODER_FAULT_NONE && !controller->los.encoder.set) {
 		lw_los_note(&controller->los.encoder, controller->now_us,
 			    lw_motion_m(&controller->motion));
@@ -538,8 +511,8 @@ static void check_overtravel(struct lw_controller *controller)
 				(controller->overtravel[side] && !backing_away && !jogging_away))) {
 			continue;
 		}
-		lw_carriage_fail(controller, side == LW_PLUS ? LW_FAULT_OVERTRAVEL_PLUS
-							     : LW_FAULT_OVERTRAVEL_MINUS);
+		lw_fault_stop(controller, side == LW_PLUS ? LW_FAULT_OVERTRAVEL_PLUS
+							  : LW_FAULT_OVERTRAVEL_MINUS);
 	}
 }
 
@@ -548,7 +521,7 @@ static void check_stepper(struct lw_controller *controller)
 {
 	if (controller->stepper_alarm.on && controller->state != LW_STATE_OFF &&
 	    controller->state != LW_STATE_FAULT) {
-		lw_carriage_fail(controller, LW_FAULT_STEPPER_ALARM);
+		lw_fault_stop(controller, LW_FAULT_STEPPER_ALARM);
 	}
 }
 
@@ -558,7 +531,7 @@ static void check_speed(struct lw_controller *controller)
 	    lw_drum_speed_exceeds(&controller->speed,
 				  controller->params->overspeed_trip_edges_per_s)) {
 		controller->overspeed_trip = true;
-		lw_carriage_fail(controller, LW_FAULT_OVERSPEED);
+		lw_fault_stop(controller, LW_FAULT_OVERSPEED);
 	}
 }
 
@@ -662,7 +635,7 @@ void lw_controller_tick(struct lw_controller *controller, uint64_t now_us)
 	check_speed(controller);
 	lw_switch_check_tick(controller);
 	if (controller->state == LW_STATE_TRACKING) {
-		lw_tracking_tick(controller, triggers);
+		lw_los_judge_tick(controller, triggers);
 	} else if (controller->state == LW_STATE_REACQUIRING) {
 		lw_reacquire_tick(controller, triggers);
 	} else if (controller->state == LW_STATE_JOGGING) {

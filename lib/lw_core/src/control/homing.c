@@ -3,6 +3,7 @@
 
 #include <stddef.h>
 
+#include "fault.h"
 #include "lw/bytes/require.h"
 #include "lw/motion/move.h"
 #include "moving.h"
@@ -109,9 +110,9 @@ static void fail_at_end(struct lw_controller *controller, enum lw_fault otherwis
 	const bool plus = overtravel_alone(controller, LW_PLUS);
 	const bool minus = overtravel_alone(controller, LW_MINUS);
 
-	lw_carriage_fail(controller, plus == minus ? otherwise
-				     : plus        ? LW_FAULT_OVERTRAVEL_PLUS
-						   : LW_FAULT_OVERTRAVEL_MINUS);
+	lw_fault_stop(controller, plus == minus ? otherwise
+				  : plus        ? LW_FAULT_OVERTRAVEL_PLUS
+						: LW_FAULT_OVERTRAVEL_MINUS);
 }
 
 void lw_homing_start(struct lw_controller *controller)
@@ -123,14 +124,13 @@ void lw_homing_start(struct lw_controller *controller)
 	controller->state = LW_STATE_UNINDEXED;
 	controller->indexed = false;
 	controller->on_orbit = false;
-	lw_carriage_clear_fault(controller);
+	lw_fault_clear(controller);
 	lw_drum_watch_index_begins(&controller->drum_watch);
 
-	if (controller->wiring[LW_PLUS]) {
-		lw_carriage_fail(controller, LW_FAULT_WIRING_PLUS);
-	} else if (controller->wiring[LW_MINUS]) {
-		lw_carriage_fail(controller, LW_FAULT_WIRING_MINUS);
-	} else if (plus && minus) {
+	if (lw_fault_stop_by_wiring(controller)) {
+		return;
+	}
+	if (plus && minus) {
 		fail_at_end(controller, LW_FAULT_BOTH_SWITCHES_ACTIVE);
 	} else if (plus || minus) {
 		start_leaving(controller, plus ? LW_PLUS : LW_MINUS);
@@ -208,7 +208,7 @@ static void tick_seeking(struct lw_controller *controller,
 	const int32_t trigger_usteps = triggers[side].at.pos_usteps;
 
 	if (controller->limit[!side].active) {
-		lw_carriage_fail(controller, LW_FAULT_INDEX_WRONG_SWITCH);
+		lw_fault_stop(controller, LW_FAULT_INDEX_WRONG_SWITCH);
 	} else if (triggers[side].taken &&
 		   (direction > 0 ? trigger_usteps < 0 : trigger_usteps >= 0)) {
 		/* Still on the ramp, which ends at 0: come again from further away. */
@@ -223,7 +223,7 @@ static void tick_seeking(struct lw_controller *controller,
 		enter(controller, LW_HOMING_TURNING);
 	} else if (direction * lw_carriage_pos_usteps(controller) >
 		   derived->travel_usteps + ramp_usteps(controller)) {
-		lw_carriage_fail(controller, LW_FAULT_INDEX_NO_SWITCH);
+		lw_fault_stop(controller, LW_FAULT_INDEX_NO_SWITCH);
 	}
 }
 
@@ -288,7 +288,7 @@ static void tick_span_check(struct lw_controller *controller,
 		controller->homing.span_error_usteps = error;
 		if (error > derived->span_tolerance_usteps ||
 		    error < -derived->span_tolerance_usteps) {
-			lw_carriage_fail(controller, LW_FAULT_INDEX_SPAN);
+			lw_fault_stop(controller, LW_FAULT_INDEX_SPAN);
 		} else {
 			start_parking(controller);
 		}
@@ -301,7 +301,7 @@ static void tick_span_check(struct lw_controller *controller,
 		/* Too far, or turned round already: the switch did not trigger where it should. */
 		controller->homing.span_error_usteps =
 			lw_carriage_pos_usteps(controller) - derived->switch_usteps[side];
-		lw_carriage_fail(controller, LW_FAULT_INDEX_SPAN);
+		lw_fault_stop(controller, LW_FAULT_INDEX_SPAN);
 	}
 }
 
@@ -328,7 +328,7 @@ static void rest_stopping(struct lw_controller *controller)
 /** These phases have no rest in them: if there was one, nothing that came before is sure. */
 static void rest_unasked(struct lw_controller *controller)
 {
-	lw_carriage_fail(controller, LW_FAULT_INDEX_NO_SWITCH);
+	lw_fault_stop(controller, LW_FAULT_INDEX_NO_SWITCH);
 }
 
 bool lw_homing_is_under_way(const struct lw_controller *controller)
@@ -361,10 +361,7 @@ void lw_homing_tick(struct lw_controller *controller, const struct lw_carriage_t
 		phase->rest(controller);
 		return;
 	}
-	/* Without an index the switches must tell the truth. */
-	if (controller->wiring[LW_PLUS] || controller->wiring[LW_MINUS]) {
-		lw_carriage_fail(controller, controller->wiring[LW_PLUS] ? LW_FAULT_WIRING_PLUS
-									 : LW_FAULT_WIRING_MINUS);
+	if (lw_fault_stop_by_wiring(controller)) {
 		return;
 	}
 	if (phase->tick != NULL) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 #include "reacquire.h"
 
+#include "fault.h"
 #include "lw/motion/move.h"
 #include "tracking.h"
 
@@ -42,13 +43,11 @@ void lw_reacquire_start(struct lw_controller *controller)
 
 	reacquire->wanted = false;
 	lw_carriage_cut(controller);
-	if (controller->wiring[LW_PLUS] || controller->wiring[LW_MINUS]) {
-		lw_carriage_fail(controller, controller->wiring[LW_PLUS] ? LW_FAULT_WIRING_PLUS
-									 : LW_FAULT_WIRING_MINUS);
+	if (lw_fault_stop_by_wiring(controller)) {
 		return;
 	}
 	if (controller->limit[LW_PLUS].active && controller->limit[LW_MINUS].active) {
-		lw_carriage_fail(controller, LW_FAULT_BOTH_SWITCHES_ACTIVE);
+		lw_fault_stop(controller, LW_FAULT_BOTH_SWITCHES_ACTIVE);
 		return;
 	}
 	reacquire->side = direction_to_go(controller) > 0 ? LW_PLUS : LW_MINUS;
@@ -153,10 +152,10 @@ void lw_reacquire_tick(struct lw_controller *controller, const struct lw_carriag
 	const int32_t way_usteps = lw_side_direction(side) *
 				   (lw_carriage_pos_usteps(controller) - reacquire->begin_usteps);
 
-	if (controller->wiring[LW_PLUS] || controller->wiring[LW_MINUS]) {
-		lw_carriage_fail(controller, controller->wiring[LW_PLUS] ? LW_FAULT_WIRING_PLUS
-									 : LW_FAULT_WIRING_MINUS);
-	} else if (reacquire->turning) {
+	if (lw_fault_stop_by_wiring(controller)) {
+		return;
+	}
+	if (reacquire->turning) {
 		go_on(controller);
 	} else if (triggers[side].taken &&
 		   lw_carriage_moves_toward(triggers[side].at.direction, side)) {
@@ -164,8 +163,8 @@ void lw_reacquire_tick(struct lw_controller *controller, const struct lw_carriag
 			derived->switch_usteps[side] - triggers[side].at.pos_usteps;
 		go_on(controller);
 	} else if (wrong_switch(controller, way_usteps)) {
-		lw_carriage_fail(controller, LW_FAULT_REACQUIRE_WRONG_SWITCH);
+		lw_fault_stop(controller, LW_FAULT_REACQUIRE_WRONG_SWITCH);
 	} else if (way_usteps > derived->travel_usteps) {
-		lw_carriage_fail(controller, LW_FAULT_REACQUIRE_NO_SWITCH);
+		lw_fault_stop(controller, LW_FAULT_REACQUIRE_NO_SWITCH);
 	}
 }

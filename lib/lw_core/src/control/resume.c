@@ -59,21 +59,14 @@ static void keep(struct lw_controller *controller)
 	resume->pattern = lw_controller_pattern(controller);
 }
 
-/** Edges that lead so far from the place that the lay would show it: a quarter of the tolerance. */
-static uint32_t tolerance_edges(const struct lw_controller *controller)
-{
-	const int64_t q16 = (int64_t)controller->derived->switch_tolerance_usteps * LW_USTEP;
-
-	return (uint32_t)(q16 / (4 * (int64_t)controller->derived->ks)) + 1;
-}
-
 /** Has the drum turned since, or may it have, unseen? */
 static bool has_turned(const struct lw_controller *controller)
 {
 	const int32_t edges =
 		(int32_t)((uint32_t)controller->motion.net_edges - controller->resume.edges);
 
-	return (edges < 0 ? 0u - (uint32_t)edges : (uint32_t)edges) > tolerance_edges(controller) ||
+	return (edges < 0 ? 0u - (uint32_t)edges : (uint32_t)edges) >
+		       lw_carriage_tolerance_edges(controller) ||
 	       controller->los.encoder.set || controller->odometer_doubtful;
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Following the drum, and whether the switches trigger where they are (LOS 1 and 2).
+ * Following the drum. Whether the switches trigger where they are: los_judge.h.
  */
 #ifndef LW_TRACKING_H
 #define LW_TRACKING_H
@@ -16,8 +16,5 @@ void lw_tracking_start(struct lw_controller *controller);
 
 /** Stop following a resting drum. The carriage stands; it can go on as if nothing had been. */
 void lw_tracking_leave(struct lw_controller *controller);
-
-/** Judge the switches. Every tick in the state TRACKING. */
-void lw_tracking_tick(struct lw_controller *controller, const struct lw_carriage_trigger *triggers);
 
 #endif /* LW_TRACKING_H */

@@ -18,7 +18,7 @@
 #include "lw/control/drum_speed.h"
 #include "lw/control/drum_watch.h"
 #include "lw/control/limit_switch.h"
-#include "lw/control/los.h"
+#include "lw/control/los_record.h"
 #include "lw/control/params.h"
 #include "lw/control/rope_length.h"
 #include "lw/control/rope_watch.h"
@@ -148,13 +148,14 @@ struct lw_controller {
 	struct lw_jogging jogging;           /**< jogging.c */
 	struct lw_resume resume;             /**< resume.c: where the rope goes on */
 	struct lw_reacquire reacquire;       /**< reacquire.c */
-	struct lw_los los;                   /**< los.c, tracking.c */
+	struct lw_los los;                   /**< los_record.c, los_judge.c */
 	struct lw_rope_watch rope;           /**< rope_watch.c: what was laid while it stood */
 	struct lw_rope_length rope_length;   /**< rope_length.c: how much is on the drum */
 
 	/*
-	 * The life of the carriage. Written by carriage.c, by the file of the motion that begins or
-	 * ends (homing.c, moving.c, tracking.c, cam_tracking.c) and by modes.c; read by all.
+	 * The life of the carriage. Written by carriage.c, fault.c, by the file of the motion that
+	 * begins or ends (homing.c, moving.c, tracking.c, cam_tracking.c) and by modes.c; read by
+	 * all.
 	 */
 	enum lw_state state;
 	enum lw_fault fault;
@@ -168,8 +169,8 @@ struct lw_controller {
 	/* Written by controller.c alone; read by modes.c and the device. */
 	enum lw_mode requested_mode; /**< waits for the drum to rest */
 	bool held;           /**< stopped by command: no hand-over until a mode is written */
-	bool wiring[2];      /**< by side: sticky wiring faults; cleared by carriage.c */
-	bool overspeed_trip; /**< cleared by carriage.c */
+	bool wiring[2];      /**< by side: sticky wiring faults; cleared by fault.c */
+	bool overspeed_trip; /**< cleared by fault.c */
 	struct lw_limit_switch_config limit_config;
 	struct lw_stepper_alarm stepper_alarm;
 	struct lw_trim trim;

@@ -2,7 +2,7 @@
 /* The records of loss of synchronization: what counts as one, and what an indexing clears. */
 #include <unity.h>
 
-#include "lw/control/los.h"
+#include "lw/control/los_record.h"
 
 static struct lw_los los;
 

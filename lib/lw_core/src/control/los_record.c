@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * The records of LOS. tracking.c judges the switches, the drum watch the encoder.
+ * The records of LOS. los_judge.c judges the switches, the drum watch the encoder.
  */
-#include "lw/control/los.h"
+#include "lw/control/los_record.h"
 
 void lw_los_note(struct lw_los_record *record, uint64_t now_us, int32_t position_q16)
 {

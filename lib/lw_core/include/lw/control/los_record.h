@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Losses of synchronization: what is kept of them. tracking.c judges the switches, the drum watch
+ * Losses of synchronization: what is kept of them. los_judge.c judges the switches, the drum watch
  * the encoder. Not for interrupt context.
  */
-#ifndef LW_LOS_H
-#define LW_LOS_H
+#ifndef LW_LOS_RECORD_H
+#define LW_LOS_RECORD_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/** One kind of LOS on one side. Written by los.c, and at power-up by device/look.c. */
+/** One kind of LOS on one side. Written by los_record.c, and at power-up by device/look.c. */
 struct lw_los_record {
 	bool set;             /**< sticky until an indexing has succeeded */
 	bool before_power_up; /**< it was so when the controller powered up */
@@ -26,8 +26,8 @@ struct lw_los {
 	struct lw_los_record encoder; /**< the drum turned unseen: drum_watch.fault */
 	/** The carriage took up a turning drum from rest; written by reacquire.c. */
 	struct lw_los_record reacquired;
-	uint16_t recoveries; /**< in this launch; written by tracking.c */
-	/* Private to tracking.c. */
+	uint16_t recoveries; /**< in this launch; written by los_judge.c */
+	/* Private to los_judge.c. */
 	bool triggered[2]; /**< by side: the switch has, on this way to the reversal */
 	bool visiting[2];  /**< by side: inside the reversal, already judged */
 };
@@ -45,4 +45,4 @@ bool lw_los_any(const struct lw_los *los);
  */
 void lw_los_indexed(struct lw_los *los, bool encoder_is_proved);
 
-#endif /* LW_LOS_H */
+#endif /* LW_LOS_RECORD_H */
