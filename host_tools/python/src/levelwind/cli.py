@@ -14,6 +14,7 @@ from levelwind.commands import (
     access,
     bench,
     cam,
+    commission,
     conformance,
     field,
     lay,
@@ -91,6 +92,7 @@ COMMANDS: dict[str, dict[str, Callable[..., None]]] = {
         "unlock": access.unlock,
         "lock": access.lock,
         "line": access.line,
+        "commission": commission.commission,
         "backup": field.backup,
         "restore": field.restore,
         "run": field.run,
@@ -118,6 +120,7 @@ for panel, commands in COMMANDS.items():
     for name, function in commands.items():
         app.command(name, rich_help_panel=panel)(function)
 app.add_typer(serve.launches, name="launches", rich_help_panel="Serve")
+app.add_typer(commission.app, name="report", rich_help_panel="Set up")
 app.add_typer(cam.app, name="cam", rich_help_panel="Without a controller")
 
 
