@@ -55,7 +55,44 @@ def go(port: int, wanted: list[str]) -> list[object]:
     return [folder / "master", port, *wanted]
 
 
-@pytest.mark.parametrize("master", [node, go])
+def rust(port: int, wanted: list[str]) -> list[object]:
+    if not shutil.which("cargo"):
+        pytest.skip("no Rust")
+    folder = BUILD / "rust"
+    (folder / "src").mkdir(parents=True, exist_ok=True)
+    shutil.copy(MASTERS / "read.rs", folder / "src" / "main.rs")
+    if not (folder / "target" / "debug" / "master").is_file():
+        (folder / "Cargo.toml").write_text(
+            '[package]\nname = "master"\nversion = "0.0.0"\nedition = "2021"\n[workspace]\n'
+        )
+        if not (
+            fetched(
+                *("cargo", "add", "tokio-modbus@0.17", "--no-default-features"),
+                *("--features", "tcp-sync"),
+                cwd=folder,
+            )
+            and fetched("cargo", "build", cwd=folder)
+        ):
+            pytest.skip("cargo cannot fetch tokio-modbus")
+    return [folder / "target" / "debug" / "master", port, *wanted]
+
+
+def java(port: int, wanted: list[str]) -> list[object]:
+    if not (shutil.which("mvn") and shutil.which("javac")):
+        pytest.skip("no Java with Maven")
+    folder = BUILD / "java"
+    if not (folder / "Read.class").is_file():
+        pom = ("mvn", "-q", "-B", "-f", MASTERS / "pom.xml")
+        jars = folder / "jars"
+        if not (
+            fetched(*pom, "dependency:copy-dependencies", f"-DoutputDirectory={jars}")
+            and fetched("javac", "-cp", f"{jars}/*", "-d", folder, MASTERS / "Read.java")
+        ):
+            pytest.skip("Maven cannot fetch digitalpetri's modbus")
+    return ["java", "-cp", f"{folder}:{folder / 'jars'}/*", "Read", port, *wanted]
+
+
+@pytest.mark.parametrize("master", [node, go, rust, java])
 def test_they_read_what_the_line_says(
     start: Callable[..., Served], master: Callable[[int, list[str]], list[object]]
 ) -> None:

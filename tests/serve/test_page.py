@@ -280,6 +280,34 @@ def test_jog_lets_go(start: Start, open_page: Open, how: str) -> None:
         assert place_um < 70_000, "the travel's end has stopped it, not the page"
 
 
+def test_a_held_jog_key_keeps_its_place(start: Start, open_page: Open) -> None:
+    served = start("--allow-commands")
+    served.index()
+    page = open_page(served)
+    page.fill("#pin", PIN)
+    page.press("#pin", "Enter")
+    key = page.locator("[data-jog='1']")
+    with served.device() as device:
+        device.write({"mode": Mode.CENTRE})
+        wait(lambda: read_live(device)["state"] == State.CENTRED, 30)
+        hold(device, lambda: press_on(page, "[data-jog='1']"), page.mouse.up)
+        before, after = key.evaluate(
+            """async (key) => {
+              const frame = () => new Promise(requestAnimationFrame);
+              const before = key.getBoundingClientRect().top;
+              const reason = document.createElement("p");
+              reason.textContent = "A reason that was not there.";
+              document.querySelector("main").prepend(reason);
+              for (let i = 0; i < 10; i++) await frame();
+              return [before, key.getBoundingClientRect().top];
+            }"""
+        )
+        assert after == pytest.approx(before, abs=1)
+        expect(key).to_have_class("held")
+        page.mouse.up()
+        wait(lambda: read_live(device)["state"] != State.JOGGING, 1.5, "let go")
+
+
 def test_keyboard_and_labels(start: Start, open_page: Open) -> None:
     served = start("--allow-commands")
     served.index()

@@ -320,13 +320,23 @@ function hold(button) {
   button.classList.add("held");
   set("answer", "");
   say();
-  jogging = { button, timer: setInterval(say, JOG_EVERY_MS) };
+  jogging = { button, timer: setInterval(say, JOG_EVERY_MS), topPx: button.getBoundingClientRect().top, shiftPx: 0 };
+  requestAnimationFrame(keepInPlace);
+}
+
+// What appears above a held key must not push it away from under the finger.
+function keepInPlace() {
+  if (!jogging) return;
+  jogging.shiftPx += jogging.topPx - jogging.button.getBoundingClientRect().top;
+  jogging.button.style.translate = `0 ${jogging.shiftPx}px`;
+  requestAnimationFrame(keepInPlace);
 }
 
 function letGo() {
   if (!jogging) return;
   clearInterval(jogging.timer);
   jogging.button.classList.remove("held");
+  jogging.button.style.translate = "";
   jogging = null;
   if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ jog: 0 }));
 }
