@@ -13,6 +13,7 @@ from pathlib import Path
 import emit_client
 import emit_core
 import emit_documents
+import emit_fuxa
 import emit_integrations
 import emit_pictures
 import emit_plc
@@ -33,6 +34,7 @@ OUTPUTS = {
     "modbus_map/tags.json": emit_integrations.map_json,
     "modbus_map/tags_node_red.json": emit_integrations.node_red_json,
     "modbus_map/tags_home_assistant.yaml": emit_integrations.home_assistant_yaml,
+    "modbus_map/tags_fuxa.json": emit_fuxa.fuxa_json,
     "modbus_map/tags_telegraf.conf": emit_integrations.telegraf_conf,
     "modbus_map/tags_wot_td.json": emit_integrations.wot_td_json,
     "modbus_map/tags_iec61131.st": emit_plc.structured_text,

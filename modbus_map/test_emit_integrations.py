@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import jsonschema
 import pytest
@@ -219,6 +220,46 @@ def test_telegraf() -> None:
     for name, field in told.items():
         assert field["address"] == POINTS[name][1].address
         assert TELEGRAF_TYPES[field["type"]] == BITS[POINTS[name][1].type]
+
+
+FUXA_TYPES = {
+    "UInt16": (1, False),
+    "Int16": (1, True),
+    "UInt32": (2, False),
+    "Int32": (2, True),
+    "Int64": (4, True),
+}
+
+
+def test_fuxa() -> None:
+    project = json.loads(read("tags_fuxa.json"))
+    (device,) = project["devices"].values()
+    assert device["property"]["options"] is True, "holes of the map are not asked for"
+    flags = {flag.name: flag.value for flag in MAP.flags}
+    told = {tag["name"]: tag for tag in device["tags"].values()}
+    assert told.keys() == flags.keys() | {
+        p.name for p in STATUS.points if p.address >= 100 or p.name == "map_version"
+    }
+    for name, tag in told.items():
+        if name in flags:
+            assert (tag["memaddress"], int(tag["address"]) - 1) == ("100000", flags[name])
+        else:
+            point = POINTS[name][1]
+            assert (tag["memaddress"], int(tag["address"]) - 1) == ("300000", point.address)
+            assert FUXA_TYPES[tag["type"]] == BITS[point.type]
+            # It asks for what stands together at once, but loses what is beyond a hundred.
+            assert point.address // 100 == (point.end - 1) // 100
+    (view,) = project["hmi"]["views"]
+    for key, item in view["items"].items():
+        assert item["property"]["variableId"] in device["tags"], key
+        assert f'id="{key}"' in view["svgcontent"]
+    drawn = ElementTree.fromstring(view["svgcontent"])
+    width, height = int(drawn.get("width")), int(drawn.get("height"))
+    for element in drawn.iter():
+        x, y = (float(element.get(a, element.get(f"c{a}", 0))) for a in "xy")
+        assert 0 <= x <= width and 0 <= y <= height
+    shown = {item["name"].partition("_")[2] for item in view["items"].values()}
+    assert shown > flags.keys() | {f"launch_inhibit_{bit.value}" for bit in MAP.launch_inhibit}
 
 
 def test_thing_description() -> None:

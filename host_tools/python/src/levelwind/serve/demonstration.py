@@ -19,7 +19,7 @@ ROPE = {
 }
 ALL_ROPE_MM = 1_000_000
 PULLED_OUT_MM = 650_000
-PULL_OUT_MILLIRPM = -750_000  # 30 m/s
+PULL_OUT_OF_WARNING = 0.8  # of overspeed_warning_edges_per_s
 LOOK_S = 0.1
 
 
@@ -41,7 +41,9 @@ class Demonstration:
 
     def _pull_out(self, device: Device) -> None:
         """So much rope, as a launch wants it."""
-        device.write({"bench_drum_speed_millirpm": PULL_OUT_MILLIRPM})
+        edges_per_s = PULL_OUT_OF_WARNING * device.value("overspeed_warning_edges_per_s")
+        rpm = launches.read_gearing(device).drum_rpm("edges_per_s")(edges_per_s)
+        device.write({"bench_drum_speed_millirpm": -round(1000 * rpm)})
         while device.value("rope_out_mm") < PULLED_OUT_MM and not self._ended.wait(LOOK_S):
             pass
         device.write({"bench_drum_speed_millirpm": 0})
