@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The project for FUXA, in FUXA: it takes it, reads every tag, and draws the panel.
 
-FUXA is a quarter of a gigabyte and compiles its own SQLite: LEVELWIND_FUXA=1 fetches it by npm, and
-what has been fetched is used again.
+FUXA is a quarter of a gigabyte and compiles its own SQLite: LEVELWIND_INTEGRATIONS=1 fetches it by
+npm, and what has been fetched is used again.
 """
 
 import json
@@ -30,8 +30,8 @@ def fetch() -> Path:
     main = FOLDER / "node_modules" / "@frangoteam" / "fuxa" / "main.js"
     binding = FOLDER / "node_modules" / "sqlite3" / "build" / "Release" / "node_sqlite3.node"
     if not binding.is_file():
-        if "LEVELWIND_FUXA" not in os.environ or not shutil.which("npm"):
-            pytest.skip("LEVELWIND_FUXA=1 fetches FUXA by npm")
+        if "LEVELWIND_INTEGRATIONS" not in os.environ or not shutil.which("npm"):
+            pytest.skip("LEVELWIND_INTEGRATIONS=1 fetches FUXA by npm")
         FOLDER.mkdir(parents=True, exist_ok=True)
         npm = ["npm", "--silent", "--prefix", str(FOLDER)]
         flags = ["--no-audit", "--no-fund", "--ignore-scripts"]
