@@ -154,13 +154,15 @@ static void edge(struct lw_world *world, enum lw_edge_source source, int steps)
 	}
 }
 
-/** One event of the plant: hand the changed pins to the controller's interrupts. */
-static void plant_event(struct lw_world *world)
+/** Events of the plant up to the first that changes pins: hand those to the controller's
+ * interrupts. */
+static void plant_event(struct lw_world *world, uint64_t until_ns)
 {
 	struct lw_controller *controller = &world->device.controller;
 	const struct lw_plant_pins *pins = &world->plant.pins;
-	const uint32_t changed = lw_plant_advance(&world->plant);
+	const uint32_t changed = lw_plant_advance_to(&world->plant, until_ns);
 
+	world->now_ns = world->plant.now_ns;
 	if (changed & LW_PLANT_ENCODER) {
 		edge(world, LW_EDGE_SOURCE_ENCODER,
 		     lw_controller_encoder(controller, pins->encoder_a, pins->encoder_b));
@@ -219,25 +221,46 @@ static void run_of_transitions(struct lw_world *world, uint64_t until_ns)
 	}
 }
 
-/** The same, for who looks at each of them, and may change the plant. */
+/** The same for who looks: each transition by itself, as the steps of each are to be seen. */
 static void observed_run(struct lw_world *world, uint64_t until_ns)
 {
 	struct lw_controller *controller = &world->device.controller;
 	struct lw_plant *plant = &world->plant;
+	struct lw_world_run *seen = &world->run;
 	struct lw_plant_run run = lw_plant_run_begin(plant, until_ns);
+	const uint64_t begin_ns = plant->substep_ns - LW_PLANT_SUBSTEP_NS;
+	const unsigned int order =
+		plant->drum.direction > 0 ? LW_QUADRATURE_ORDER : ~LW_QUADRATURE_ORDER;
+	unsigned int levels =
+		(unsigned int)plant->pins.encoder_a << 1 | (unsigned int)plant->pins.encoder_b;
+	uint32_t step_count = 0;
+	bool index_begins;
 
 	do {
-		const bool index_begins = lw_plant_run_next(&run);
+		index_begins = lw_plant_run_next(&run);
+		levels = lw_quadrature_next_levels(levels, order);
 
-		lw_plant_run_end(plant, &run);
-		world->now_ns = plant->now_ns;
-		edge(world, LW_EDGE_SOURCE_ENCODER,
-		     lw_controller_encoder(controller, plant->pins.encoder_a,
-					   plant->pins.encoder_b));
-		if (index_begins) {
-			lw_controller_encoder_index(controller);
+		const int edge_steps = lw_controller_encoder(controller, levels >> 1, levels & 1u);
+
+		if (edge_steps != 0) {
+			const int steps = lw_controller_driver_step(controller, edge_steps);
+
+			lw_plant_step(plant, steps);
+			seen->steps[step_count].time_ns = begin_ns + (uint32_t)run.now_ns;
+			seen->steps[step_count].transition = run.count;
+			seen->steps[step_count].steps = steps;
+			step_count++;
 		}
-	} while (lw_plant_run_goes_on(&run) && plant->drum.plain);
+	} while (!index_begins && run.count < LW_WORLD_RUN_MAX && lw_plant_run_goes_on(&run));
+	seen->direction = plant->drum.direction;
+	seen->count = run.count;
+	seen->step_count = step_count;
+	lw_plant_run_end(plant, &run);
+	world->now_ns = plant->now_ns;
+	world->config.observe_run(world->config.context, seen);
+	if (index_begins) {
+		lw_controller_encoder_index(controller);
+	}
 }
 
 void lw_world_run(struct lw_world *world, uint64_t until_ns)
@@ -247,15 +270,16 @@ void lw_world_run(struct lw_world *world, uint64_t until_ns)
 		const uint64_t own_ns =
 			world->timer_ns < world->tick_ns ? world->timer_ns : world->tick_ns;
 
+		const uint64_t last_ns = own_ns < until_ns ? own_ns : until_ns;
+
 		if ((plant_ns < own_ns ? plant_ns : own_ns) > until_ns) {
 			break;
 		}
-		if (lw_plant_next_is_run(&world->plant, own_ns < until_ns ? own_ns : until_ns)) {
-			(world->config.observe_edge == NULL ? run_of_transitions : observed_run)(
-				world, own_ns < until_ns ? own_ns : until_ns);
+		if (lw_plant_next_is_run(&world->plant, last_ns)) {
+			(world->config.observe_run == NULL ? run_of_transitions
+							   : observed_run)(world, last_ns);
 		} else if (plant_ns <= own_ns) {
-			world->now_ns = plant_ns;
-			plant_event(world);
+			plant_event(world, last_ns);
 		} else if (world->timer_ns <= world->tick_ns) {
 			world->now_ns = world->timer_ns;
 			world->timer_ns += 1000000000u / world->timer_rate_edges_per_s;

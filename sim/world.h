@@ -18,6 +18,23 @@
 #include "lw/plant.h"
 #include "lw/plant_bench.h"
 
+/** Most transitions of a run. */
+#define LW_WORLD_RUN_MAX 64
+
+/** Transitions of the encoder one way, of which each changes one channel, and no other event lies
+ *  between two of them. */
+struct lw_world_run {
+	int direction; /**< +1: A leads B; -1 */
+	uint32_t count;
+	uint32_t step_count;
+	/** Transitions that gave steps, in their order. */
+	struct {
+		uint64_t time_ns;
+		uint32_t transition; /**< which one, from 1 on */
+		int steps;           /**< as in `observe_edge` */
+	} steps[LW_WORLD_RUN_MAX];
+};
+
 /** How a world starts. */
 struct lw_world_config {
 	uint64_t seed;
@@ -35,9 +52,12 @@ struct lw_world_config {
 	int (*write_slot)(void *context, unsigned int slot, const uint8_t *bytes, size_t length);
 	/** Called after every tick, once per millisecond of virtual time. May be NULL. */
 	void (*observe)(void *context);
-	/** Called after every transition of the encoder and every edge of the edge timer, with the
-	 *  step pulse that it gave: +1, 0, -1. May be NULL. */
+	/** Called after every edge of the edge timer, and every transition of the encoder that is
+	 *  in no run, with the step pulse that it gave: +1, 0, -1. May be NULL. */
 	void (*observe_edge)(void *context, enum lw_edge_source source, int step);
+	/** Called after every run of transitions, whose time is that of its last one. NULL where
+	 *  `observe_edge` is. */
+	void (*observe_run)(void *context, const struct lw_world_run *run);
 };
 
 /** State. Read the parts through their own interfaces. */
@@ -56,6 +76,7 @@ struct lw_world {
 	uint32_t timer_rate_edges_per_s;
 	bool stepper_enabled;
 	bool was_indexed;
+	struct lw_world_run run; /**< the last one that was observed */
 	struct lw_store store;
 	struct lw_kept kept; /**< the controller's memory over a restart */
 	uint8_t memory[LW_STORE_SLOTS][LW_STORE_SLOT_SIZE]; /**< the storage if it is in memory */

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "lw/bytes/require.h"
 #include "lw/motion/law.h"
 
 /** Microsteps per micrometre of the plant's defaults, which the scenarios keep. */
@@ -47,7 +48,7 @@ static void broken(struct lw_judge *judge, enum lw_invariant invariant, double f
 
 	if (verdict->broken < 0 && counts) {
 		verdict->broken = (int32_t)invariant;
-		verdict->broken_ms = (uint32_t)(judge->world->now_ns / 1000000u);
+		verdict->broken_ms = (uint32_t)(judge->now_ns / 1000000u);
 		verdict->found = found;
 		verdict->limit = limit;
 	}
@@ -80,6 +81,23 @@ static void turn(struct lw_judge_screw *screw, int dd)
 		screw->m -= screw->u;
 		screw->u -= region(screw) * screw->ka;
 		screw->rested_edges = screw->u == 0 ? dwell_edges(screw) : 0;
+	}
+}
+
+/** Turn so many edges one way. */
+static void turn_run(struct lw_judge_screw *screw, int dd, int64_t edges)
+{
+	const int64_t to = screw->m + dd * edges * screw->u;
+
+	/* The sweep has nothing but its slope: between two places in it lie no others. */
+	if (screw->u != 0 && screw->m >= screw->begin && screw->m < screw->end &&
+	    to >= screw->begin && to < screw->end) {
+		screw->m = to;
+		screw->rested_edges = 0;
+		return;
+	}
+	for (; edges > 0; edges--) {
+		turn(screw, dd);
 	}
 }
 
@@ -167,12 +185,9 @@ static int64_t used_edges(int64_t transitions, int32_t edges_per_pulse)
 	}
 }
 
-static int64_t true_edges(const struct lw_judge *judge)
+static int64_t true_edges(const struct lw_judge *judge, const struct lw_plant_truth *truth)
 {
-	struct lw_plant_truth truth;
-
-	lw_plant_read_truth(&judge->world->plant, &truth);
-	return used_edges(truth.drum_transitions, judge->edges_per_pulse);
+	return used_edges(truth->drum_transitions, judge->edges_per_pulse);
 }
 
 /** The used edge that lies between the pins before and now: +1, -1, or 0. */
@@ -196,7 +211,7 @@ static int pins_edge(struct lw_judge *judge)
 
 static void check_step(struct lw_judge *judge, enum lw_edge_source source, int step)
 {
-	struct lw_world *world = judge->world;
+	const struct lw_world *world = judge->world;
 	const int direction = judge->motor_reversed ? -step : step;
 	const int side = direction > 0 ? LW_PLUS : LW_MINUS;
 	/* A motor that is wired wrongly is stopped by the tick, or moves out when told to back off.
@@ -210,13 +225,13 @@ static void check_step(struct lw_judge *judge, enum lw_edge_source source, int s
 		broken(judge, LW_INVARIANT_BURST, step, 1);
 	}
 	if (world->plant.pins.overtravel[side] &&
-	    world->now_ns - judge->overtravel_ns[side] >= late_ns) {
+	    judge->now_ns - judge->overtravel_ns[side] >= late_ns) {
 		broken(judge, LW_INVARIANT_OVERTRAVEL, 1, 0);
 	}
 	/* Beside an overtravel switch that is actuated, or was in this tick, an edge that rocks
 	 * steps away from it only. */
 	if (judge->step == step && judge->step_source == source && judge->screw.ks > 0 &&
-	    (judge->blocked_ns == 0 || world->now_ns - judge->blocked_ns > BLOCKED_NS)) {
+	    (judge->blocked_ns == 0 || judge->now_ns - judge->blocked_ns > BLOCKED_NS)) {
 		/* A whole microstep lies between two steps the same way. */
 		const int64_t between = llabs(judge->source_edges[source] - judge->step_edges);
 		const int64_t least = LW_USTEP / judge->screw.ks;
@@ -230,17 +245,24 @@ static void check_step(struct lw_judge *judge, enum lw_edge_source source, int s
 	judge->step_edges = judge->source_edges[source];
 }
 
+/** Something happens at this time. */
+static void begin_edge(struct lw_judge *judge, uint64_t now_ns)
+{
+	judge->now_ns = now_ns;
+	for (int side = 0; side < 2; side++) {
+		if (!judge->world->plant.pins.overtravel[side]) {
+			judge->overtravel_ns[side] = now_ns;
+		} else {
+			judge->blocked_ns = now_ns;
+		}
+	}
+}
+
 void lw_judge_edge(struct lw_judge *judge, enum lw_edge_source source, int step)
 {
 	const int edge = source == LW_EDGE_SOURCE_TIMER ? 1 : pins_edge(judge);
 
-	for (int side = 0; side < 2; side++) {
-		if (!judge->world->plant.pins.overtravel[side]) {
-			judge->overtravel_ns[side] = judge->world->now_ns;
-		} else {
-			judge->blocked_ns = judge->world->now_ns;
-		}
-	}
+	begin_edge(judge, judge->world->now_ns);
 	judge->source_edges[source] += edge;
 	if (source == LW_EDGE_SOURCE_ENCODER) {
 		judge->edges += edge;
@@ -257,6 +279,38 @@ void lw_judge_edge(struct lw_judge *judge, enum lw_edge_source source, int step)
 	}
 }
 
+void lw_judge_run(struct lw_judge *judge, const struct lw_world_run *run)
+{
+	const int dd = run->direction;
+	const int64_t from =
+		LW_WORLD_RUN_MAX + judge->phase; /* a multiple of 4 more: none below 0 */
+	const int64_t base = used_edges(from, judge->edges_per_pulse);
+	const int64_t before = judge->source_edges[LW_EDGE_SOURCE_ENCODER];
+	const int64_t edges =
+		used_edges(from + dd * (int64_t)run->count, judge->edges_per_pulse) - base;
+
+	for (uint32_t i = 0; i < run->step_count; i++) {
+		const int64_t at = from + dd * (int64_t)run->steps[i].transition;
+		const int64_t to = used_edges(at, judge->edges_per_pulse);
+
+		begin_edge(judge, run->steps[i].time_ns);
+		judge->source_edges[LW_EDGE_SOURCE_ENCODER] = before + to - base;
+		if (to == used_edges(at - dd, judge->edges_per_pulse)) {
+			broken(judge, LW_INVARIANT_BURST, 1, 0);
+		}
+		check_step(judge, LW_EDGE_SOURCE_ENCODER, run->steps[i].steps);
+	}
+	begin_edge(judge, judge->world->now_ns);
+	judge->phase = (int)((from + dd * (int64_t)run->count) & 3);
+	judge->source_edges[LW_EDGE_SOURCE_ENCODER] = before + edges;
+	judge->edges += edges;
+	judge->verdict.pin_edges += llabs(edges);
+	if (judge->following && edges != 0) {
+		turn_run(&judge->screw, dd, llabs(edges));
+	}
+	LW_REQUIRE(judge->phase == pins_phase(judge->world));
+}
+
 /* ---- every millisecond ----------------------------------------------------------------------- */
 
 static bool resting(int32_t state)
@@ -270,14 +324,15 @@ static bool flag(const struct lw_status *status, enum lw_flag bit)
 	return ((uint64_t)status->flags_2 << 32 | status->flags) >> bit & 1u;
 }
 
-static void check_odometer(struct lw_judge *judge, const struct lw_status *status)
+static void check_odometer(struct lw_judge *judge, const struct lw_status *status,
+			   const struct lw_plant_truth *truth)
 {
 	if (status->uptime_ms < judge->uptime_ms ||
 	    judge->edges_per_pulse != judge->world->device.active.encoder_edges_per_pulse) {
 		judge->edges_per_pulse = judge->world->device.active.encoder_edges_per_pulse;
 		judge->edges_base = judge->edges - status->net_edges;
-		judge->true_base = true_edges(judge) - status->net_edges;
-		judge->lay_edges = true_edges(judge);
+		judge->true_base = true_edges(judge, truth) - status->net_edges;
+		judge->lay_edges = true_edges(judge, truth);
 		judge->standing_edges = 0;
 		if (status->uptime_ms < judge->uptime_ms && status->net_edges != 0) {
 			broken(judge, LW_INVARIANT_ODOMETER, (double)status->net_edges, 0);
@@ -285,7 +340,7 @@ static void check_odometer(struct lw_judge *judge, const struct lw_status *statu
 	}
 
 	const int64_t counted = judge->edges - judge->edges_base;
-	const int64_t hidden = llabs(counted - (true_edges(judge) - judge->true_base));
+	const int64_t hidden = llabs(counted - (true_edges(judge, truth) - judge->true_base));
 	/* One pulse may be under way, and one dither. */
 	const int64_t may = judge->may_hide_edges + judge->edges_per_pulse + 1;
 
@@ -297,7 +352,7 @@ static void check_odometer(struct lw_judge *judge, const struct lw_status *statu
 	}
 	/* The first index pulse has nothing to be compared with, and the second one only it. */
 	if (hidden > judge->edges_per_pulse + 1 && !judge->channels_hide &&
-	    llabs(true_edges(judge) - judge->true_base) <
+	    llabs(true_edges(judge, truth) - judge->true_base) <
 		    (int64_t)SILENT_REVOLUTIONS * judge->edges_per_pulse *
 			    judge->world->device.active.encoder_pulses_per_rev) {
 		judge->unknowable = true;
@@ -419,15 +474,11 @@ static void check_permit(struct lw_judge *judge, const struct lw_status *status,
 /** Let the drum drive its screw, and see how fast it turns. */
 static void turn_lay(struct lw_judge *judge, const struct lw_plant_truth *truth)
 {
-	const int64_t edges = true_edges(judge);
+	const int64_t edges = true_edges(judge, truth);
 	const double moved = (double)llabs(truth->drum_transitions - judge->transitions);
 
-	for (; judge->lay_edges < edges; judge->lay_edges++) {
-		turn(&judge->lay, 1);
-	}
-	for (; judge->lay_edges > edges; judge->lay_edges--) {
-		turn(&judge->lay, -1);
-	}
+	turn_run(&judge->lay, edges > judge->lay_edges ? 1 : -1, llabs(edges - judge->lay_edges));
+	judge->lay_edges = edges;
 	judge->transitions = truth->drum_transitions;
 	judge->transitions_per_ms += (moved - judge->transitions_per_ms) / 8.0;
 }
@@ -641,9 +692,10 @@ void lw_judge_tick(struct lw_judge *judge)
 	struct lw_plant_truth truth;
 	int64_t lay_edges;
 
-	lw_device_refresh_status(&judge->world->device);
+	judge->now_ns = judge->world->now_ns;
+	lw_device_refresh_live(&judge->world->device);
 	lw_plant_read_truth(&judge->world->plant, &truth);
-	check_odometer(judge, status);
+	check_odometer(judge, status, &truth);
 	lay_edges = judge->lay_edges;
 	turn_lay(judge, &truth);
 	check_standing(judge, status, judge->lay_edges - lay_edges);
@@ -693,6 +745,8 @@ void lw_judge_tick(struct lw_judge *judge)
 
 void lw_judge_init(struct lw_judge *judge, struct lw_world *world)
 {
+	struct lw_plant_truth truth;
+
 	*judge = (struct lw_judge){
 		.world = world,
 		.verdict.broken = -1,
@@ -700,12 +754,14 @@ void lw_judge_init(struct lw_judge *judge, struct lw_world *world)
 		.edges_per_pulse = world->device.active.encoder_edges_per_pulse,
 		.sound = true,
 	};
-	judge->true_base = true_edges(judge);
+	lw_plant_read_truth(&world->plant, &truth);
+	judge->true_base = true_edges(judge, &truth);
 	judge->lay_edges = judge->true_base;
 }
 
 void lw_judge_answers(struct lw_judge *judge, uint32_t answers)
 {
+	judge->now_ns = judge->world->now_ns;
 	if (answers != 1) {
 		broken(judge, LW_INVARIANT_LINE, answers, 1);
 	}

@@ -105,7 +105,8 @@ struct lw_judge {
 	/** Nobody can know what was hidden: neither channel showed it, nor an index pulse. */
 	bool unknowable;
 
-	int phase; /**< of the encoder's pins, 0..3 */
+	uint64_t now_ns; /**< of what is being judged */
+	int phase;       /**< of the encoder's pins, 0..3 */
 	int64_t edges;
 	int64_t edges_base; /**< at power-up */
 	int64_t true_base;
@@ -154,6 +155,9 @@ void lw_judge_init(struct lw_judge *judge, struct lw_world *world);
 
 /** To be called from lw_world_config.observe_edge. */
 void lw_judge_edge(struct lw_judge *judge, enum lw_edge_source source, int step);
+
+/** To be called from lw_world_config.observe_run. */
+void lw_judge_run(struct lw_judge *judge, const struct lw_world_run *run);
 
 /** To be called from lw_world_config.observe. */
 void lw_judge_tick(struct lw_judge *judge);

@@ -73,6 +73,13 @@ static void observe_edge(void *context, enum lw_edge_source source, int step)
 	lw_judge_edge(&player->judge, source, step);
 }
 
+static void observe_run(void *context, const struct lw_world_run *run)
+{
+	struct player *player = context;
+
+	lw_judge_run(&player->judge, run);
+}
+
 static void observe(void *context)
 {
 	struct player *player = context;
@@ -390,6 +397,7 @@ int32_t lw_campaign_play(const struct lw_launch *launch, struct lw_verdict *verd
 		.context = player,
 		.observe = observe,
 		.observe_edge = observe_edge,
+		.observe_run = observe_run,
 	};
 
 	player->polling = true;

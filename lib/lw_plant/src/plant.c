@@ -199,6 +199,17 @@ uint32_t lw_plant_advance(struct lw_plant *plant)
 	return changed;
 }
 
+uint32_t lw_plant_advance_to(struct lw_plant *plant, uint64_t until_ns)
+{
+	uint32_t changed;
+
+	do {
+		changed = lw_plant_advance(plant);
+	} while (changed == 0 && plant->event_ns <= until_ns &&
+		 plant->drum.transition_ns > plant->event_ns);
+	return changed;
+}
+
 void lw_plant_read_truth(const struct lw_plant *plant, struct lw_plant_truth *truth)
 {
 	const struct lw_plant_carriage *carriage = &plant->carriage;

@@ -18,6 +18,12 @@
 /** The field's speed is seen through a low-pass filter, so that a single step is no hammer blow. */
 #define FIELD_SPEED_TIME_CONSTANT_S 1e-3
 
+/** A field that is slower stands: the filter's smallest numbers would never go away. */
+#define FIELD_STANDS_USTEPS_PER_S 1e-200
+
+/** More than any rounding of what is added up in a substep. */
+#define ROUNDING 1e-9
+
 void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
 			    const struct lw_plant_config *config)
 {
@@ -44,6 +50,14 @@ void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
 	};
 }
 
+/** fmin(fmax(value, least), most), of which no compiler makes two instructions: there is no NaN. */
+static inline double between(double value, double least, double most)
+{
+	const double above = value > least ? value : least;
+
+	return above < most ? above : most;
+}
+
 /**
  * Acceleration by the field. Damping acts through the field too, hence the cosine: it holds the
  * rotor in step, but gives a rotor that slips nothing on average, and never more than the field
@@ -59,7 +73,7 @@ static double field_acceleration(const struct lw_plant_carriage *carriage)
 		      carriage->damping_per_s * cos(angle) *
 			      (carriage->field_usteps_per_s - carriage->speed_usteps_per_s);
 
-	pull = fmin(fmax(pull, -most), most);
+	pull = between(pull, -most, most);
 	return pull /
 	       (1.0 + fabs(carriage->speed_usteps_per_s) / carriage->half_torque_usteps_per_s);
 }
@@ -84,6 +98,25 @@ static void count_pole_slips(struct lw_plant_carriage *carriage)
 	}
 }
 
+/**
+ * Does friction hold a carriage that stands? Asked without the field's sine, which is never more
+ * than its angle: where this says no, it may still hold.
+ */
+static bool friction_holds(const struct lw_plant_carriage *carriage)
+{
+	double most = fabs(carriage->side_load_usteps_per_s2);
+
+	if (carriage->enabled && !carriage->alarm) {
+		const double lag = (double)carriage->commanded_usteps - carriage->position_usteps -
+				   (double)carriage->pole * carriage->period_usteps;
+
+		most += carriage->holding_usteps_per_s2 *
+				fabs(lag * TWO_PI / carriage->period_usteps) +
+			carriage->damping_per_s * fabs(carriage->field_usteps_per_s);
+	}
+	return most < carriage->friction_usteps_per_s2 * (1.0 - ROUNDING);
+}
+
 void lw_plant_carriage_substep(struct lw_plant_carriage *carriage, uint64_t begin_ns)
 {
 	double steps = (double)(carriage->commanded_usteps - carriage->last_commanded_usteps);
@@ -92,10 +125,18 @@ void lw_plant_carriage_substep(struct lw_plant_carriage *carriage, uint64_t begi
 	carriage->last_commanded_usteps = carriage->commanded_usteps;
 	carriage->field_usteps_per_s += (steps / SUBSTEP_S - carriage->field_usteps_per_s) *
 					SUBSTEP_S / FIELD_SPEED_TIME_CONSTANT_S;
+	if (fabs(carriage->field_usteps_per_s) < FIELD_STANDS_USTEPS_PER_S) {
+		carriage->field_usteps_per_s = 0.0; /* a processor is slow with what comes next */
+	}
 	count_pole_slips(carriage);
 	if (begin_ns < carriage->stall_end_ns) {
 		carriage->speed_usteps_per_s = 0.0;
 		carriage->path_usteps_per_s = 0.0;
+		return;
+	}
+
+	if (carriage->speed_usteps_per_s == 0.0 && carriage->path_usteps_per_s == 0.0 &&
+	    friction_holds(carriage)) {
 		return;
 	}
 
@@ -108,8 +149,9 @@ void lw_plant_carriage_substep(struct lw_plant_carriage *carriage, uint64_t begi
 	/* Friction takes speed away but cannot reverse it; what it takes wholly stands still. */
 	double speed = carriage->speed_usteps_per_s + acceleration * SUBSTEP_S;
 
-	speed = copysign(fmax(fabs(speed) - carriage->friction_usteps_per_s2 * SUBSTEP_S, 0.0),
-			 speed);
+	double left = fabs(speed) - carriage->friction_usteps_per_s2 * SUBSTEP_S;
+
+	speed = copysign(left > 0.0 ? left : 0.0, speed);
 
 	double room = copysign(carriage->flange_usteps, speed) - carriage->position_usteps;
 

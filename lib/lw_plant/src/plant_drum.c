@@ -108,10 +108,12 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 		return;
 	}
 
-	/* The last substep's transitions can have missed its end by a rounding error: fmax. */
 	bool forward = drum->moved_transitions > 0.0;
-	double missing = fmax(forward ? 1.0 - drum->fraction : drum->fraction, 0.0);
+	double missing = forward ? 1.0 - drum->fraction : drum->fraction;
 
+	if (missing < 0.0) {
+		missing = 0.0; /* the last substep's have missed its end by a rounding error */
+	}
 	drum->direction = forward ? 1 : -1;
 	drum->period_ns = LW_PLANT_SUBSTEP_NS / fabs(drum->moved_transitions);
 	drum->offset_ns = missing * drum->period_ns;

@@ -123,18 +123,14 @@ static void rope_by_layers(const struct lw_rope_length *rope,
 	status->rope_mm = lw_clamp32(lw_divide_nearest(um, 1000));
 }
 
-void lw_device_refresh_status(struct lw_device *device)
+/** Fill what changes as the machine moves, and what the law works with. @return what it was read
+ * from */
+static struct lw_motion_reading read_live(const struct lw_device *device, struct lw_status *status)
 {
 	const struct lw_controller *controller = &device->controller;
 	const struct lw_motion *motion = &controller->motion;
 	const struct lw_derived *derived = &device->derived;
-	const struct lw_last_error *error = &device->slave.pdu.last_error;
-	const struct lw_los_record *los1 = controller->los.los1;
-	const struct lw_los_record *los2 = controller->los.los2;
-	const struct lw_rope_watch *rope = &controller->rope;
-	const struct lw_store *store = device->config->store;
-	const struct lw_store_pair *param_slots = &store->pairs[LW_STORE_PARAMS / 2];
-	const struct lw_store_pair *journal_slots = &store->pairs[LW_STORE_JOURNAL / 2];
+	const struct lw_params *params = &device->active;
 	const struct lw_law_window *in_force;
 	struct lw_motion_reading reading;
 	uint16_t launch_inhibit;
@@ -153,9 +149,55 @@ void lw_device_refresh_status(struct lw_device *device)
 	const struct lw_law_window track =
 		controller->state == LW_STATE_TRACKING
 			? *in_force
-			: lw_params_window(&device->active, derived, controller->trim.plus_um,
+			: lw_params_window(params, derived, controller->trim.plus_um,
 					   controller->trim.minus_um);
+
+	status->state = (int32_t)controller->state;
+	status->active_mode = (int32_t)controller->mode;
+	status->fault = (int32_t)controller->fault;
+	status->flags = (uint32_t)bits;
+	status->launch_inhibit = launch_inhibit;
+	status->position_um = lw_params_q16_to_um(params, reading.m);
+	status->position_usteps = lw_law_pos_usteps(reading.m);
+	status->m = reading.m;
+	status->u = reading.u;
+	status->drum_speed_edges_per_s = controller->speed.edges_per_s;
+	status->net_edges = reading.net_edges;
+	status->pattern_edges = reading.pattern_edges;
+	status->uptime_ms = (uint32_t)(device->now_us / 1000);
+	status->los_recoveries = controller->los.recoveries;
+	status->flags_2 = (uint32_t)(bits >> 32);
+	status->steps = reading.steps;
+	status->ka = derived->ka;
+	status->nr = derived->nr;
+	status->ks = derived->ks;
+	status->reversal_plus_usteps = lw_law_pos_usteps(track.sweep_end);
+	status->reversal_minus_usteps = lw_law_pos_usteps(track.sweep_begin) - 1;
+	status->edges_per_1000_drum_revs = derived->edges_per_1000_drum_revs;
+	status->dwell_plus_edges = derived->dwell_plus_edges;
+	status->dwell_minus_edges = derived->dwell_minus_edges;
+	return reading;
+}
+
+void lw_device_refresh_live(struct lw_device *device)
+{
+	(void)read_live(device, &device->status_image);
+}
+
+void lw_device_refresh_status(struct lw_device *device)
+{
+	const struct lw_controller *controller = &device->controller;
+	const struct lw_motion *motion = &controller->motion;
+	const struct lw_derived *derived = &device->derived;
+	const struct lw_last_error *error = &device->slave.pdu.last_error;
+	const struct lw_los_record *los1 = controller->los.los1;
+	const struct lw_los_record *los2 = controller->los.los2;
+	const struct lw_rope_watch *rope = &controller->rope;
+	const struct lw_store *store = device->config->store;
+	const struct lw_store_pair *param_slots = &store->pairs[LW_STORE_PARAMS / 2];
+	const struct lw_store_pair *journal_slots = &store->pairs[LW_STORE_JOURNAL / 2];
 	const struct lw_params *params = &device->active;
+	struct lw_motion_reading reading;
 
 	device->status_image = (struct lw_status){
 		.self_test = LW_SELF_TEST,
@@ -167,25 +209,9 @@ void lw_device_refresh_status(struct lw_device *device)
 		.image_hash_high = (uint32_t)(device->config->image_hash >> 32),
 		.image_hash_low = (uint32_t)device->config->image_hash,
 
-		.state = (int32_t)controller->state,
-		.active_mode = (int32_t)controller->mode,
-		.fault = (int32_t)controller->fault,
-		.flags = (uint32_t)bits,
-		.launch_inhibit = launch_inhibit,
-		.position_um = lw_params_q16_to_um(params, reading.m),
-		.position_usteps = lw_law_pos_usteps(reading.m),
-		.m = reading.m,
-		.u = reading.u,
-		.drum_speed_edges_per_s = controller->speed.edges_per_s,
 		.rope_speed_mm_per_s = rope_mm(device, controller->speed.edges_per_s),
-		.rope_mm = rope_mm(device, reading.net_edges),
-		.net_edges = reading.net_edges,
-		.pattern_edges = reading.pattern_edges,
-		.uptime_ms = (uint32_t)(device->now_us / 1000),
-		.los_recoveries = controller->los.recoveries,
 		.span_error_um = lw_params_q16_to_um(
 			params, (int64_t)controller->homing.span_error_usteps * LW_USTEP),
-		.flags_2 = (uint32_t)(bits >> 32),
 		.resume_position_um = controller->resume.known
 					      ? lw_params_q16_to_um(params, controller->resume.m)
 					      : 0,
@@ -207,7 +233,6 @@ void lw_device_refresh_status(struct lw_device *device)
 		.illegal_transitions = controller->quadrature.illegal_transitions,
 		.switch_plus_triggers = controller->limit[LW_PLUS].triggers,
 		.switch_minus_triggers = controller->limit[LW_MINUS].triggers,
-		.steps = reading.steps,
 		.requests = device->slave.pdu.counters[LW_BUS_SERVER_MESSAGES],
 		.crc_errors = device->slave.pdu.counters[LW_BUS_CRC_ERRORS],
 		.exceptions = device->slave.pdu.counters[LW_BUS_EXCEPTIONS],
@@ -274,21 +299,15 @@ void lw_device_refresh_status(struct lw_device *device)
 		.last_error_value = error->value,
 		.last_error_limit = error->limit,
 
-		.ka = derived->ka,
-		.nr = derived->nr,
-		.ks = derived->ks,
-		.reversal_plus_usteps = lw_law_pos_usteps(track.sweep_end),
-		.reversal_minus_usteps = lw_law_pos_usteps(track.sweep_begin) - 1,
 		.overshoot_actual_um = derived->overshoot_um,
 		.slope_error_ppm = derived->slope_error_ppm,
 		.overshoot_error_um = derived->overshoot_error_um,
-		.edges_per_1000_drum_revs = derived->edges_per_1000_drum_revs,
-		.dwell_plus_edges = derived->dwell_plus_edges,
-		.dwell_minus_edges = derived->dwell_minus_edges,
 		.breaker_edges = derived->breaker_edges,
 		.breaker_cycle_plus = (int32_t)motion->law.cycle_plus,
 		.breaker_cycle_minus = (int32_t)motion->law.cycle_minus,
 	};
+	reading = read_live(device, &device->status_image);
+	device->status_image.rope_mm = rope_mm(device, reading.net_edges);
 	device->status_image.slot_6 = (int32_t)store->pairs[LW_STORE_LOOK / 2].state[0];
 	device->status_image.slot_7 = (int32_t)store->pairs[LW_STORE_LOOK / 2].state[1];
 	rope_by_layers(&controller->rope_length, &reading, controller->speed.edges_per_s,

@@ -400,6 +400,14 @@ static inline uint64_t lw_plant_next_event_ns(const struct lw_plant *plant)
 uint32_t lw_plant_advance(struct lw_plant *plant);
 
 /**
+ * @brief Execute the next event, and those after it up to a time, while no pin changes and the next
+ *        one is no transition.
+ *
+ * @return as lw_plant_advance(), of the last one
+ */
+uint32_t lw_plant_advance_to(struct lw_plant *plant, uint64_t until_ns);
+
+/**
  * A run of transitions that no fault touches, and nothing lies between: most events by far. It
  * holds what they change, so that one costs little; lw_plant_run_end() gives it to the plant.
  */

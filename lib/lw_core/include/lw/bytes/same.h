@@ -12,11 +12,11 @@
 #include <stdint.h>
 #include <string.h>
 
-/** Bits in which two words differ. */
-static inline uint32_t lw_word_differences(const char *a, const char *b)
+/** Bits in which two words of the processor differ. */
+static inline size_t lw_word_differences(const char *a, const char *b)
 {
-	uint32_t word;
-	uint32_t other;
+	size_t word;
+	size_t other;
 
 	memcpy(&word, a, sizeof(word));
 	memcpy(&other, b, sizeof(other));
@@ -28,20 +28,21 @@ static inline bool lw_same(const void *a, const void *b, size_t size)
 {
 	const char *left = (const char *)a;
 	const char *right = (const char *)b;
-	uint32_t differences = 0;
+	const size_t word = sizeof(size_t);
+	size_t differences = 0;
 
 	/* Four words at a time: a loop for each would cost twice as much. */
-	for (; size >= 16; size -= 16, left += 16, right += 16) {
+	for (; size >= 4 * word; size -= 4 * word, left += 4 * word, right += 4 * word) {
 		differences |= lw_word_differences(left, right) |
-			       lw_word_differences(left + 4, right + 4) |
-			       lw_word_differences(left + 8, right + 8) |
-			       lw_word_differences(left + 12, right + 12);
+			       lw_word_differences(left + word, right + word) |
+			       lw_word_differences(left + 2 * word, right + 2 * word) |
+			       lw_word_differences(left + 3 * word, right + 3 * word);
 	}
-	for (; size >= 4; size -= 4, left += 4, right += 4) {
+	for (; size >= word; size -= word, left += word, right += word) {
 		differences |= lw_word_differences(left, right);
 	}
 	for (; size > 0; size--) {
-		differences |= (uint32_t)(uint8_t)(*left++ ^ *right++);
+		differences |= (size_t)(uint8_t)(*left++ ^ *right++);
 	}
 	return differences == 0;
 }

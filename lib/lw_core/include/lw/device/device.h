@@ -281,4 +281,11 @@ void lw_device_end_write(struct lw_device *device, int result);
 /** Fill `status_image` with one consistent snapshot. */
 void lw_device_refresh_status(struct lw_device *device);
 
+/**
+ * Fill of `status_image` only what changes as the machine moves, and what the law works with:
+ * state, mode, fault, flags, inhibits, position, slope, speed of the drum, edges, steps,
+ * recoveries, uptime, ka, nr, ks, reversal points and dwells. For who looks every millisecond.
+ */
+void lw_device_refresh_live(struct lw_device *device);
+
 #endif /* LW_DEVICE_H */
