@@ -8,30 +8,22 @@ import shlex
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from contextlib import nullcontext
 from pathlib import Path
 from typing import NamedTuple
 
 from levelwind.map_table import Flag
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from .launch import Invariant, memory_bits, memory_part, play, play_apart
-from .report import OUTCOMES, Launch, by_fault, by_invariant, draw, write
+from .report import OUTCOMES, Launch, by_fault, by_invariant, by_worker, draw, write
 from .scenario import flip_scenario, scenario
+from .workers import Played, Pool, cluster, local_pool, play_all, run_worker
 
 FLIP_OUTCOMES = ("harmless", "told", "restart", "moved", "silent")
 REPORT = Path("out/campaign.html")
-
-
-def play_seed(seed: int, library: Path | None = None) -> Launch:
-    """Play the launch of a seed."""
-    s = scenario(seed)
-    return Launch(seed, s.faults, play(s, library=library)[0])
-
-
-def campaign(seeds: range) -> Iterator[Launch]:
-    """Play all, on all cores, as they are done."""
-    with multiprocessing.Pool(os.cpu_count()) as pool:
-        yield from pool.imap_unordered(play_seed, seeds, chunksize=8)
+LINE_LAUNCHES = 500  # where no bar can be drawn, a line for so many
 
 
 class Flip(NamedTuple):
@@ -88,6 +80,33 @@ def replay(seed: int) -> int:
     return verdict.broken is not None
 
 
+def play_with_progress(seeds: range, pool: Pool) -> list[Played]:
+    """Play all; say at once which launch broke an invariant."""
+    console = Console(stderr=True)
+    columns = (
+        *(TextColumn("launches"), BarColumn(), MofNCompleteColumn()),
+        *(TextColumn("{task.fields[rate]}"), TimeRemainingColumn()),
+    )
+    pieces = []
+    began = time.monotonic()
+    done = 0
+    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+        task = progress.add_task("launches", total=len(seeds), rate="")
+        for played in play_all(seeds, pool):
+            pieces.append(played)
+            for launch in played.launches:
+                if launch.verdict.broken is not None:
+                    progress.console.print(launch.summary(), highlight=False)
+            done += len(played.launches)
+            rate = f"{done / (time.monotonic() - began):.0f} a second"
+            progress.update(task, completed=done, rate=rate)
+            if progress.disable and done // LINE_LAUNCHES != (
+                (done - len(played.launches)) // LINE_LAUNCHES
+            ):
+                print(f"{done} of {len(seeds)} launches, {rate}", file=sys.stderr, flush=True)
+    return pieces
+
+
 def main() -> int:
     """Play, print, report."""
     parser = argparse.ArgumentParser(prog="./dev campaign", description=__doc__)
@@ -96,24 +115,31 @@ def main() -> int:
     parser.add_argument("--replay", type=int, metavar="SEED", help="only this one, with a picture")
     parser.add_argument("--report", type=Path, default=REPORT, metavar="FILE", help="HTML")
     parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="play on a Dask cluster: tcp://HOST:8786"
+    )
+    parser.add_argument(
+        "--worker",
+        metavar="ADDRESS",
+        help="instead: play for the Dask scheduler there, on all cores",
+    )
+    parser.add_argument(
         "--flips", type=int, metavar="N", help="instead: flip N bits of the controller's memory"
     )
     arguments = parser.parse_args()
+    if arguments.worker is not None:
+        run_worker(arguments.worker)
     if arguments.flips is not None:
         return flips(range(arguments.seed, arguments.seed + arguments.flips))
     if arguments.replay is not None:
         return replay(arguments.replay)
 
     began = time.monotonic()
-    launches = []
-    for launch in campaign(range(arguments.seed, arguments.seed + arguments.launches)):
-        launches.append(launch)
-        if launch.verdict.broken is not None:
-            print(launch.summary())
-        if len(launches) % 500 == 0:
-            print(f"{len(launches)} launches, {time.monotonic() - began:.0f} s", flush=True)
-    launches.sort(key=lambda x: x.seed)
-    write(arguments.report, launches, f"./dev campaign {shlex.join(sys.argv[1:])}")
+    seeds = range(arguments.seed, arguments.seed + arguments.launches)
+    with cluster(arguments.scheduler) if arguments.scheduler else nullcontext(local_pool) as pool:
+        pieces = play_with_progress(seeds, pool)
+    # In the order of their seeds: the order in which they were played is another each time.
+    launches = sorted((x for piece in pieces for x in piece.launches), key=lambda x: x.seed)
+    write(arguments.report, launches, f"./dev campaign {shlex.join(sys.argv[1:])}", pieces)
 
     print(f"{'fault':18} {'launches':>9}" + "".join(f"{o:>14}" for o in OUTCOMES))
     for fault, *counts in by_fault(launches):
@@ -130,7 +156,13 @@ def main() -> int:
     edges = sum(x.verdict.pin_edges for x in launches)
     hours = sum(x.verdict.duration_ms for x in launches) / 3.6e6
     print(f"{hours:.1f} h of winch time, {edges / 1e6:.0f} million edges")
-    print(f"{arguments.report}: {len(launches)} launches in {time.monotonic() - began:.0f} s")
+    for host, process, count, seconds, _ in by_worker(pieces):
+        print(f"{host}, process {process}: {count} launches, {seconds:.0f} s of its processor")
+    took_s = time.monotonic() - began
+    print(
+        f"{arguments.report}: {len(launches)} launches in {took_s:.0f} s, "
+        f"{len(launches) / took_s:.0f} a second"
+    )
     return 1 if broken else 0
 
 

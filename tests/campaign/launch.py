@@ -102,7 +102,7 @@ class _Sample(ctypes.Structure):
     )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Verdict:
     """struct lw_verdict."""
 

@@ -7,6 +7,7 @@ import io
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from levelwind.line.points import enum_label
 from levelwind.map_table import Fault, Flag, State
@@ -15,6 +16,9 @@ from matplotlib.figure import Figure
 
 from .launch import Invariant, Sample, Verdict, play
 from .scenario import FAULTS, scenario
+
+if TYPE_CHECKING:
+    from .workers import Played
 
 UM_PER_USTEP = 10
 LOS_FLAGS = (Flag.LOS, Flag.LOS1_PLUS, Flag.LOS1_MINUS, Flag.LOS2_PLUS, Flag.LOS2_MINUS)
@@ -198,8 +202,36 @@ def by_fault(launches: Sequence[Launch]) -> list[tuple[str | int, ...]]:
     return rows
 
 
+def _ranges(seeds: Iterable[int]) -> str:
+    """1-20, 41-60"""
+    ranges: list[list[int]] = []
+    for seed in sorted(seeds):
+        if ranges and seed == ranges[-1][1] + 1:
+            ranges[-1][1] = seed
+        else:
+            ranges.append([seed, seed])
+    return ", ".join(str(a) if a == b else f"{a}-{b}" for a, b in ranges)
+
+
+def by_worker(pieces: Iterable["Played"]) -> list[tuple[str, int, int, float, str]]:
+    """Host, process, launches that it has played, time of its processor, their seeds."""
+    workers: dict[tuple[str, int], list[Played]] = {}
+    for piece in pieces:
+        workers.setdefault((piece.host, piece.process), []).append(piece)
+    rows = []
+    for (host, process), played in sorted(workers.items()):
+        seeds = [launch.seed for piece in played for launch in piece.launches]
+        seconds = sum(piece.seconds for piece in played)
+        rows.append((host, process, len(seeds), seconds, _ranges(seeds)))
+    return rows
+
+
 def write(
-    path: Path, launches: Sequence[Launch], command: str, library: Path | None = None
+    path: Path,
+    launches: Sequence[Launch],
+    command: str,
+    pieces: Sequence["Played"],
+    library: Path | None = None,
 ) -> None:
     """Write the report."""
     edges = sum(x.verdict.pin_edges for x in launches)
@@ -220,6 +252,14 @@ def write(
         _table(
             ("fault", "launches"),
             ((enum_label(Fault, fault), count) for fault, count in faults.most_common()),
+        ),
+        "<h2>Where they ran</h2>",
+        _table(
+            ("host", "process", "launches", "s of its processor", "seeds"),
+            (
+                (host, str(process), count, round(seconds), seeds)
+                for host, process, count, seconds, seeds in by_worker(pieces)
+            ),
         ),
         "<h2>To look at</h2>",
     ]

@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 from levelwind.core.native import find
 
-from .__main__ import campaign, play_flip, play_seed
+from .__main__ import play_flip
 from .launch import LIBRARY, Invariant, memory_bits, memory_part
 from .scenario import FAULTS, scenario
+from .workers import play_all, play_seed
 
 ROOT = Path(__file__).parents[2]
 LAUNCHES = 120
@@ -24,7 +25,7 @@ INCLUDES = (
 
 
 def test_a_short_campaign_holds():
-    launches = list(campaign(range(1, 1 + LAUNCHES)))
+    launches = [x for played in play_all(range(1, 1 + LAUNCHES)) for x in played.launches]
     broken = [launch.summary() for launch in launches if launch.verdict.broken is not None]
     assert not broken, "\n".join(broken)
     assert {fault for launch in launches for fault in launch.faults} == set(FAULTS)
