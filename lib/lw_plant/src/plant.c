@@ -185,7 +185,7 @@ static uint32_t run_slow(struct lw_plant *plant)
 	return changed;
 }
 
-uint32_t lw_plant_advance(struct lw_plant *plant)
+static inline uint32_t advance(struct lw_plant *plant)
 {
 	uint32_t changed;
 
@@ -199,12 +199,17 @@ uint32_t lw_plant_advance(struct lw_plant *plant)
 	return changed;
 }
 
+uint32_t lw_plant_advance(struct lw_plant *plant)
+{
+	return advance(plant);
+}
+
 uint32_t lw_plant_advance_to(struct lw_plant *plant, uint64_t until_ns)
 {
 	uint32_t changed;
 
 	do {
-		changed = lw_plant_advance(plant);
+		changed = advance(plant);
 	} while (changed == 0 && plant->event_ns <= until_ns &&
 		 plant->drum.transition_ns > plant->event_ns);
 	return changed;
