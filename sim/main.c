@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "host.h"
+#include "lw/plant_figures.h"
 #include "port.h"
 #include "tcp.h"
 #include "world.h"
@@ -35,7 +36,7 @@ struct options {
 	const char *trace;
 	double speed; /**< 0: as fast as it can */
 	uint64_t seed;
-	int32_t carriage_um;
+	struct lw_plant_config machine;
 	uint8_t unit_id;
 	uint32_t silence_us; /**< 0: by the port */
 };
@@ -63,7 +64,8 @@ static void on_signal(int number)
 static void usage(FILE *stream)
 {
 	fputs("usage: lw_sim --port PATH | --tcp ADDRESS:PORT [--speed FACTOR|max] [--seed N] \n"
-	      "              [--storage FILE] [--trace FILE.csv] [--unit N] [--carriage-um N]\n"
+	      "              [--storage FILE] [--trace FILE.csv] [--unit N] [--figure NAME=VALUE "
+	      "...]\n"
 	      "              [--frame-silence-ms N]\n"
 	      "\n"
 	      "  --port PATH      serial port to answer on, or where to make a link to a pseudo "
@@ -75,7 +77,9 @@ static void usage(FILE *stream)
 	      "  --storage FILE   keeps parameters, event log and counters (default: in memory)\n"
 	      "  --trace FILE     write one line per millisecond in which something moves\n"
 	      "  --unit N         Modbus unit id (default: the stored one, at first 1)\n"
-	      "  --carriage-um N  where the carriage stands at first (default 0)\n"
+	      "  --figure NAME=VALUE\n"
+	      "                   another figure of the machine, as screw_lead_mm=10 "
+	      "(doc/machine.md)\n"
 	      "  --frame-silence-ms N\n"
 	      "                   silence that ends a frame (default: by the baud rate, 2 on a "
 	      "pseudo\n"
@@ -116,6 +120,50 @@ static bool parse_speed(const char *text, double *speed)
 	return true;
 }
 
+/** A figure of the machine, NAME=VALUE, or an error message and false. */
+static bool parse_figure(const char *text, struct lw_plant_config *machine)
+{
+	const char *equals = strchr(text, '=');
+	char name[64];
+	char *end;
+	double value;
+
+	if (equals == NULL || equals == text || equals[1] == '\0' ||
+	    (size_t)(equals - text) >= sizeof(name)) {
+		fprintf(stderr, "lw_sim: --figure %s: must be NAME=VALUE\n", text);
+		return false;
+	}
+	memcpy(name, text, (size_t)(equals - text));
+	name[equals - text] = '\0';
+	value = strtod(equals + 1, &end);
+	if (*end != '\0') {
+		fprintf(stderr, "lw_sim: --figure %s: must be a number\n", text);
+		return false;
+	}
+	switch (lw_plant_config_set(machine, name, value)) {
+	case 0:
+		return true;
+	case -ENOENT:
+		fprintf(stderr,
+			"lw_sim: --figure %s: no machine has a figure %s; doc/machine.md "
+			"lists them\n",
+			text, name);
+		return false;
+	default:
+		for (const struct lw_plant_figure *figure = lw_plant_figures; figure->name != NULL;
+		     figure++) {
+			if (strcmp(figure->name, name) == 0) {
+				fprintf(stderr,
+					"lw_sim: --figure %s: must be a %snumber from %g "
+					"to %g\n",
+					text, figure->whole ? "whole " : "", figure->min,
+					figure->max);
+			}
+		}
+		return false;
+	}
+}
+
 static bool parse_options(int argc, char **argv, struct options *options)
 {
 	static const struct option names[] = {
@@ -126,7 +174,7 @@ static bool parse_options(int argc, char **argv, struct options *options)
 		{"storage", required_argument, NULL, 'f'},
 		{"trace", required_argument, NULL, 't'},
 		{"unit", required_argument, NULL, 'u'},
-		{"carriage-um", required_argument, NULL, 'c'},
+		{"figure", required_argument, NULL, 'm'},
 		{"frame-silence-ms", required_argument, NULL, 'i'},
 		{"help", no_argument, NULL, 'h'},
 		{NULL, 0, NULL, 0},
@@ -135,6 +183,7 @@ static bool parse_options(int argc, char **argv, struct options *options)
 	int name;
 
 	*options = (struct options){.speed = 1, .seed = 1};
+	lw_plant_config_default(&options->machine);
 	while ((name = getopt_long(argc, argv, "h", names, NULL)) != -1) {
 		switch (name) {
 		case 'p':
@@ -166,11 +215,10 @@ static bool parse_options(int argc, char **argv, struct options *options)
 			}
 			options->unit_id = (uint8_t)number;
 			break;
-		case 'c':
-			if (!parse_number("carriage-um", optarg, -1000000, 1000000, &number)) {
+		case 'm':
+			if (!parse_figure(optarg, &options->machine)) {
 				return false;
 			}
-			options->carriage_um = (int32_t)number;
 			break;
 		case 'i':
 			if (!parse_number("frame-silence-ms", optarg, 1, 1000, &number)) {
@@ -423,9 +471,15 @@ int main(int argc, char **argv)
 {
 	static struct simulator simulator; /* large: off the stack */
 	struct lw_world_config config;
+	struct lw_plant_misfit why;
 	int ret;
 
 	if (!parse_options(argc, argv, &simulator.options)) {
+		return 2;
+	}
+	if (lw_plant_config_check(&simulator.options.machine, &why)) {
+		fprintf(stderr, "lw_sim: --figure %s must be %s %s\n", why.figure, why.must_be,
+			why.other);
 		return 2;
 	}
 	if (simulator.options.storage != NULL) {
@@ -440,7 +494,7 @@ int main(int argc, char **argv)
 
 	config = (struct lw_world_config){
 		.seed = simulator.options.seed,
-		.carriage_um = simulator.options.carriage_um,
+		.machine = &simulator.options.machine,
 		.silence_us = simulator.options.silence_us != 0 ? simulator.options.silence_us
 			      : is_serial                       ? 0
 								: PTY_SILENCE_US,
@@ -451,11 +505,7 @@ int main(int argc, char **argv)
 		.write_slot = simulator.options.storage != NULL ? write_slot : NULL,
 		.observe = trace,
 	};
-	if (lw_world_init(&simulator.world, &config, lw_host_now_ns() / 1000)) {
-		fprintf(stderr, "lw_sim: --carriage-um %d: beyond the end stops\n",
-			simulator.options.carriage_um);
-		return EXIT_FAILURE;
-	}
+	(void)lw_world_init(&simulator.world, &config, lw_host_now_ns() / 1000); /* checked */
 	if (!open_line(&simulator)) {
 		return EXIT_FAILURE;
 	}

@@ -12,6 +12,7 @@
 #include "lw/bytes/layout.h"
 #include "lw/motion/law.h"
 #include "lw/control/params.h"
+#include "lw/plant_figures.h"
 #include "world.h"
 
 /** A law to replay. Positions and slopes Q16.16 where not in microsteps. */
@@ -171,11 +172,63 @@ int lw_native_derive(const int32_t *values, struct lw_native_derived *derived,
 	return ret;
 }
 
-/** A world at virtual time 0, or NULL. */
-struct lw_world *lw_native_world_create(uint64_t seed, int32_t carriage_um)
+/**
+ * The default machine with these figures instead.
+ *
+ * @retval -ENOENT, -ERANGE lw_plant_config_set() refused the figure names[*wrong]
+ */
+static int machine_of(struct lw_plant_config *machine, const char *const *names,
+		      const double *values, size_t count, size_t *wrong)
 {
-	const struct lw_world_config config = {.seed = seed, .carriage_um = carriage_um};
-	struct lw_world *world = malloc(sizeof(*world));
+	int ret = 0;
+
+	lw_plant_config_default(machine);
+	for (*wrong = 0; *wrong < count && ret == 0; ++*wrong) {
+		ret = lw_plant_config_set(machine, names[*wrong], values[*wrong]);
+	}
+	*wrong -= ret != 0;
+	return ret;
+}
+
+/**
+ * Are these figures a machine, the others being the default's?
+ *
+ * @param wrong receives the number of the figure that lw_plant_config_set() refuses
+ * @param why   receives what lw_plant_config_check() refuses
+ * @retval 0 it is one
+ * @retval -ENOENT, -ERANGE by lw_plant_config_set()
+ * @retval -EINVAL by lw_plant_config_check()
+ */
+int lw_native_machine_check(const char *const *names, const double *values, size_t count,
+			    size_t *wrong, struct lw_plant_misfit *why)
+{
+	struct lw_plant_config machine;
+	const int ret = machine_of(&machine, names, values, count, wrong);
+
+	return ret != 0 ? ret : lw_plant_config_check(&machine, why);
+}
+
+/** A figure of the default machine. */
+double lw_native_machine_default(const char *name)
+{
+	struct lw_plant_config machine;
+	double value = 0.0;
+
+	lw_plant_config_default(&machine);
+	(void)lw_plant_config_get(&machine, name, &value);
+	return value;
+}
+
+/** A world at virtual time 0, of the default machine but for some figures; or NULL. */
+struct lw_world *lw_native_world_create(uint64_t seed, const char *const *names,
+					const double *values, size_t count)
+{
+	struct lw_plant_config machine;
+	const struct lw_world_config config = {.seed = seed, .machine = &machine};
+	size_t wrong;
+	struct lw_world *world = machine_of(&machine, names, values, count, &wrong) == 0
+					 ? malloc(sizeof(*world))
+					 : NULL;
 
 	if (world != NULL && lw_world_init(world, &config, 0) != 0) {
 		free(world);
@@ -284,6 +337,16 @@ const struct lw_layout lw_layout_native[] = {
 	LW_LAYOUT_MEMBER(lw_refusal, address),
 	LW_LAYOUT_MEMBER(lw_refusal, value),
 	LW_LAYOUT_MEMBER(lw_refusal, limit),
+	LW_LAYOUT_STRUCT(lw_plant_figure),
+	LW_LAYOUT_MEMBER(lw_plant_figure, name),
+	LW_LAYOUT_MEMBER(lw_plant_figure, min),
+	LW_LAYOUT_MEMBER(lw_plant_figure, max),
+	LW_LAYOUT_MEMBER(lw_plant_figure, words),
+	LW_LAYOUT_MEMBER(lw_plant_figure, whole),
+	LW_LAYOUT_STRUCT(lw_plant_misfit),
+	LW_LAYOUT_MEMBER(lw_plant_misfit, figure),
+	LW_LAYOUT_MEMBER(lw_plant_misfit, must_be),
+	LW_LAYOUT_MEMBER(lw_plant_misfit, other),
 	LW_LAYOUT_STRUCT(lw_plant_truth),
 	LW_LAYOUT_MEMBER(lw_plant_truth, time_ns),
 	LW_LAYOUT_MEMBER(lw_plant_truth, drum_transitions),

@@ -59,13 +59,17 @@ static void power_up(struct lw_world *world, uint64_t slave_now_us)
 int lw_world_init(struct lw_world *world, const struct lw_world_config *config,
 		  uint64_t slave_now_us)
 {
-	struct lw_plant_config plant_config;
+	struct lw_plant_config machine;
 	int ret;
 
 	*world = (struct lw_world){.config = *config, .tick_ns = TICK_NS};
-	lw_plant_config_default(&plant_config);
-	plant_config.start_um = config->carriage_um;
-	ret = lw_plant_init(&world->plant, &plant_config, config->seed);
+	world->config.machine = NULL;
+	if (config->machine != NULL) {
+		machine = *config->machine;
+	} else {
+		lw_plant_config_default(&machine);
+	}
+	ret = lw_plant_init(&world->plant, &machine, config->seed);
 	if (ret) {
 		return ret;
 	}
@@ -199,7 +203,7 @@ static void run_of_transitions(struct lw_world *world, uint64_t until_ns)
 	struct lw_controller *controller = &world->device.controller;
 	struct lw_plant *plant = &world->plant;
 	struct lw_plant_run run = lw_plant_run_begin(plant, until_ns);
-	const int direction = plant->drum.direction;
+	const int direction = lw_plant_run_direction(plant);
 	bool index_begins;
 
 	do {

@@ -38,7 +38,8 @@ struct lw_world_run {
 /** How a world starts. */
 struct lw_world_config {
 	uint64_t seed;
-	int32_t carriage_um;     /**< where the carriage stands at power-up */
+	/** The machine, read by lw_world_init() only. NULL: lw_plant_config_default(). */
+	const struct lw_plant_config *machine;
 	uint32_t silence_us;     /**< see struct lw_device_config */
 	bool line_takes_no_time; /**< see struct lw_device_config */
 	uint8_t unit_id;         /**< see struct lw_device_config */
@@ -87,7 +88,7 @@ struct lw_world {
  *
  * @param slave_now_us time for the Modbus slave, which may be another clock
  * @retval 0 done
- * @retval -EINVAL the carriage stands outside of the end stops
+ * @retval -EINVAL the configuration is no machine: lw_plant_config_check() says why
  */
 int lw_world_init(struct lw_world *world, const struct lw_world_config *config,
 		  uint64_t slave_now_us);

@@ -9,7 +9,18 @@ import ctypes
 import functools
 import struct
 from collections.abc import Callable, Iterator, Mapping
-from ctypes import POINTER, c_bool, c_double, c_int, c_int32, c_int64, c_size_t, c_uint8, c_uint64
+from ctypes import (
+    POINTER,
+    c_bool,
+    c_char_p,
+    c_double,
+    c_int,
+    c_int32,
+    c_int64,
+    c_size_t,
+    c_uint8,
+    c_uint64,
+)
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -92,7 +103,7 @@ def _library() -> ctypes.CDLL:
     )
     world = ctypes.c_void_p
     for name, result, arguments in (
-        ("create", world, (c_uint64, c_int32)),
+        ("create", world, (c_uint64, POINTER(c_char_p), POINTER(c_double), c_size_t)),
         ("destroy", None, (world,)),
         ("run_ns", None, (world, c_uint64)),
         ("request", c_size_t, (world, ctypes.c_char_p, c_size_t, POINTER(c_uint8))),
@@ -141,10 +152,20 @@ def write_requests(values: Mapping[str, int]) -> Iterator[bytes]:
 class World:
     """A machine that has just been switched on."""
 
-    def __init__(self, seed: int = 1, carriage_um: int = 0, **parameters: int) -> None:
+    def __init__(
+        self,
+        seed: int = 1,
+        carriage_um: int = 0,
+        machine: Mapping[str, float] | None = None,
+        **parameters: int,
+    ) -> None:
+        """`machine`: figures of a machine file that differ from the default's."""
         self._library = _library()
-        self._world = self._library.lw_native_world_create(seed, carriage_um)
-        assert self._world, f"no world with the carriage at {carriage_um} um"
+        figures = {"start_mm": carriage_um / 1000, **(machine or {})}
+        names = (c_char_p * len(figures))(*(name.encode() for name in figures))
+        values = (c_double * len(figures))(*figures.values())
+        self._world = self._library.lw_native_world_create(seed, names, values, len(figures))
+        assert self._world, f"no machine with {figures}"
         self._answer = (c_uint8 * PDU_MAX)()
         self.run(0.3)  # the drum counts as at rest after rest_time_ms
         if parameters:

@@ -5,6 +5,7 @@ set(LW_PLANT_SOURCES
   src/plant_carriage.c
   src/plant_contacts.c
   src/plant_drum.c
+  src/plant_figures.c
   src/plant_injection.c
   src/plant_random.c
   src/plant_switch.c

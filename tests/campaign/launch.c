@@ -391,15 +391,18 @@ int32_t lw_campaign_play(const struct lw_launch *launch, struct lw_verdict *verd
 		return -ENOMEM;
 	}
 
+	struct lw_plant_config machine;
 	const struct lw_world_config config = {
 		.seed = launch->seed,
-		.carriage_um = launch->carriage_um,
+		.machine = &machine,
 		.context = player,
 		.observe = observe,
 		.observe_edge = observe_edge,
 		.observe_run = observe_run,
 	};
 
+	lw_plant_config_default(&machine);
+	machine.start_um = launch->carriage_um;
 	player->polling = true;
 	player->trace = trace;
 	player->trace_size = trace_size;

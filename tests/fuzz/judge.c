@@ -8,7 +8,6 @@
 #define BROADCAST     0u
 #define FRAME_MIN     4u
 #define EXCEPTION_BIT 0x80u
-#define CARRIAGE_UM   0
 #define NS_PER_MS     1000000u
 
 /** Take a field's present value for the one that it must have. */
@@ -51,7 +50,7 @@ size_t judge_seal(uint8_t *frame, size_t length)
 
 void judge_init(struct judge *judge, uint64_t seed)
 {
-	const struct lw_world_config config = {.seed = seed, .carriage_um = CARRIAGE_UM};
+	const struct lw_world_config config = {.seed = seed};
 
 	judge->line_us = 0;
 	judge->answer_length = 0;

@@ -10,6 +10,7 @@
 
 #define UM_PER_MM           1000.0
 #define DURATION_MAX_US     1000000u
+#define ENCODER_PULSES_MAX  100000u
 #define RANDOM_SEED_OF_ZERO 0x9e3779b97f4a7c15u
 
 void lw_plant_config_default(struct lw_plant_config *config)
@@ -39,43 +40,87 @@ void lw_plant_config_default(struct lw_plant_config *config)
 	};
 }
 
+static bool at_least_0(double value)
+{
+	return isfinite(value) && value >= 0.0;
+}
+
 static bool positive(double value)
 {
 	return isfinite(value) && value > 0.0;
 }
 
-static bool config_is_valid(const struct lw_plant_config *config)
+int lw_plant_config_check(const struct lw_plant_config *config, struct lw_plant_misfit *why)
 {
-	return config->encoder_pulses_per_rev > 0 && config->encoder_revs_per_drum_rev_num > 0 &&
-	       config->encoder_revs_per_drum_rev_den > 0 &&
-	       positive(config->drum_acceleration_rpm_per_s) && config->screw_lead_um > 0 &&
-	       config->usteps_per_rev > 0 && config->full_steps_per_rev > 0 &&
-	       4ull * config->usteps_per_rev % config->full_steps_per_rev == 0 &&
-	       positive(config->holding_acceleration_mm_per_s2) &&
-	       positive(config->half_torque_speed_mm_per_s) && isfinite(config->damping_ratio) &&
-	       config->damping_ratio >= 0.0 && isfinite(config->friction_mm_per_s2) &&
-	       config->friction_mm_per_s2 >= 0.0 && config->overtravel_um > 0 &&
-	       config->flange_um > config->overtravel_um && config->start_um <= config->flange_um &&
-	       config->start_um >= -config->flange_um &&
-	       config->limit_um[LW_PLANT_PLUS] < config->overtravel_um &&
-	       config->limit_um[LW_PLANT_MINUS] > -config->overtravel_um &&
-	       config->limit_um[LW_PLANT_MINUS] < config->limit_um[LW_PLANT_PLUS] &&
-	       config->switch_hysteresis_um >= 0 && isfinite(config->limit_shift_um_per_mm_per_s) &&
-	       config->limit_shift_um_per_mm_per_s >= 0.0 &&
-	       config->contact_transit_us <= DURATION_MAX_US &&
-	       config->bounce_duration_us <= DURATION_MAX_US && config->bounce_interval_us > 0 &&
-	       config->bounce_interval_us <= DURATION_MAX_US;
+	const struct {
+		bool fits;
+		struct lw_plant_misfit misfit;
+	} rules[] = {
+		{config->encoder_pulses_per_rev > 0 &&
+			 config->encoder_pulses_per_rev <= ENCODER_PULSES_MAX,
+		 {"encoder_pulses_per_rev", "from", "1 to 100000"}},
+		{config->encoder_revs_per_drum_rev_num > 0,
+		 {"encoder_ratio_numerator", "more than", "0"}},
+		{config->encoder_revs_per_drum_rev_den > 0,
+		 {"encoder_ratio_denominator", "more than", "0"}},
+		{positive(config->drum_acceleration_rpm_per_s),
+		 {"drum_acceleration_rpm_per_s", "more than", "0"}},
+		{config->screw_lead_um > 0, {"screw_lead_mm", "more than", "0"}},
+		{config->usteps_per_rev > 0, {"microsteps_per_rev", "more than", "0"}},
+		{config->full_steps_per_rev > 0, {"full_steps_per_rev", "more than", "0"}},
+		{config->full_steps_per_rev == 0 ||
+			 4ull * config->usteps_per_rev % config->full_steps_per_rev == 0,
+		 {"microsteps_per_rev", "a multiple of a quarter of", "full_steps_per_rev"}},
+		{positive(config->holding_acceleration_mm_per_s2),
+		 {"holding_acceleration_mm_per_s2", "more than", "0"}},
+		{positive(config->half_torque_speed_mm_per_s),
+		 {"half_torque_speed_mm_per_s", "more than", "0"}},
+		{at_least_0(config->top_speed_mm_per_s), {"top_speed_mm_per_s", "at least", "0"}},
+		{at_least_0(config->damping_ratio), {"damping_ratio", "at least", "0"}},
+		{at_least_0(config->friction_mm_per_s2), {"friction_mm_per_s2", "at least", "0"}},
+		{config->overtravel_um > 0, {"overtravel_mm", "more than", "0"}},
+		{config->flange_um > config->overtravel_um,
+		 {"end_stop_mm", "more than", "overtravel_mm"}},
+		{config->start_um <= config->flange_um && config->start_um >= -config->flange_um,
+		 {"start_mm", "between minus and plus", "end_stop_mm"}},
+		{config->limit_um[LW_PLANT_PLUS] < config->overtravel_um,
+		 {"switch_plus_mm", "less than", "overtravel_mm"}},
+		{config->limit_um[LW_PLANT_MINUS] > -config->overtravel_um,
+		 {"switch_minus_mm", "more than minus", "overtravel_mm"}},
+		{config->limit_um[LW_PLANT_MINUS] < config->limit_um[LW_PLANT_PLUS],
+		 {"switch_minus_mm", "less than", "switch_plus_mm"}},
+		{config->switch_hysteresis_um >= 0, {"switch_hysteresis_mm", "at least", "0"}},
+		{at_least_0(config->limit_shift_um_per_mm_per_s),
+		 {"switch_late_ms", "at least", "0"}},
+		{config->contact_transit_us <= DURATION_MAX_US,
+		 {"contact_travel_ms", "at most", "1000"}},
+		{config->bounce_duration_us <= DURATION_MAX_US, {"bounce_ms", "at most", "1000"}},
+		{config->bounce_interval_us > 0 && config->bounce_interval_us <= DURATION_MAX_US,
+		 {"bounce_interval_ms", "from", "0.001 to 1000"}},
+	};
+
+	for (size_t i = 0; i < sizeof(rules) / sizeof(rules[0]); i++) {
+		if (!rules[i].fits) {
+			*why = rules[i].misfit;
+			return -EINVAL;
+		}
+	}
+	return 0;
 }
 
 int lw_plant_init(struct lw_plant *plant, const struct lw_plant_config *config, uint64_t seed)
 {
-	if (!config_is_valid(config)) {
+	struct lw_plant_misfit why;
+
+	if (lw_plant_config_check(config, &why) != 0) {
 		return -EINVAL;
 	}
 	*plant = (struct lw_plant){
 		.random = seed != 0 ? seed : RANDOM_SEED_OF_ZERO,
 		.bounce_interval_ns = config->bounce_interval_us * NS_PER_US,
 		.trigger.fire_ns = LW_PLANT_NEVER_NS,
+		.limit_swapped = config->limit_swapped,
+		.overtravel_swapped = config->overtravel_swapped,
 	};
 	lw_plant_drum_init(&plant->drum, config);
 	lw_plant_carriage_init(&plant->carriage, config);
@@ -92,16 +137,20 @@ int lw_plant_init(struct lw_plant *plant, const struct lw_plant_config *config, 
 			.shift_s = config->limit_shift_um_per_mm_per_s / UM_PER_MM,
 			.transit_ns = config->contact_transit_us * NS_PER_US,
 			.bounce_ns = config->bounce_duration_us * NS_PER_US,
+			.fault = config->limit_fault[side],
 			.outward = outward,
+			.contacts_swapped = config->limit_contacts_swapped[side],
 		};
 		plant->overtravel[side] = (struct lw_plant_switch){
 			.trigger_usteps = config->overtravel_um * usteps_per_um,
+			.fault = config->overtravel_fault[side],
 			.outward = outward,
 		};
 		lw_plant_switch_init(&plant->limit[side], plant->carriage.position_usteps);
 		lw_plant_switch_init(&plant->overtravel[side], plant->carriage.position_usteps);
 	}
 	(void)lw_plant_switch_pins(plant);
+	lw_plant_drum_show(plant);
 	return 0;
 }
 

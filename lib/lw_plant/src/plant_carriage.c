@@ -42,6 +42,9 @@ void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
 		.period_usteps = period,
 		.holding_usteps_per_s2 = holding_acceleration,
 		.half_torque_usteps_per_s = config->half_torque_speed_mm_per_s * usteps_per_mm,
+		.top_s_per_ustep = config->top_speed_mm_per_s > 0.0
+					   ? 1.0 / (config->top_speed_mm_per_s * usteps_per_mm)
+					   : 0.0,
 		.damping_per_s = 2.0 * config->damping_ratio * natural_rad_per_s,
 		.friction_usteps_per_s2 = config->friction_mm_per_s2 * usteps_per_mm,
 		.flange_usteps = config->flange_um * usteps_per_um,
@@ -73,9 +76,12 @@ static double field_acceleration(const struct lw_plant_carriage *carriage)
 		      carriage->damping_per_s * cos(angle) *
 			      (carriage->field_usteps_per_s - carriage->speed_usteps_per_s);
 
+	double speed = fabs(carriage->speed_usteps_per_s);
+	double left = 1.0 - speed * carriage->top_s_per_ustep;
+
 	pull = between(pull, -most, most);
-	return pull /
-	       (1.0 + fabs(carriage->speed_usteps_per_s) / carriage->half_torque_usteps_per_s);
+	return pull * (left > 0.0 ? left : 0.0) /
+	       (1.0 + speed / carriage->half_torque_usteps_per_s);
 }
 
 int64_t lw_plant_carriage_pole(const struct lw_plant_carriage *carriage, double position_usteps)

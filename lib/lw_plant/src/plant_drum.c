@@ -20,6 +20,25 @@
 #define FLICKER_RANGE_NS               2000000u
 #define PI                             3.14159265358979323846
 
+/**
+ * Seen as transitions modulo 4, swapped channels are the position's negative; channel A inverted
+ * shows 1 less the position, B inverted 3 less.
+ */
+static void wire_encoder(struct lw_plant_drum *drum, const struct lw_plant_config *config)
+{
+	drum->wired_direction = 1;
+	if (config->encoder_swapped) {
+		drum->wired_direction = -1;
+	}
+	for (int channel = 0; channel < 2; channel++) {
+		if (config->encoder_inverted[channel]) {
+			drum->wired_direction = (int8_t)-drum->wired_direction;
+			drum->wired_offset =
+				(uint8_t)(((channel == 0 ? 1u : 3u) - drum->wired_offset) & 3u);
+		}
+	}
+}
+
 void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config *config)
 {
 	double transitions_per_rev =
@@ -38,7 +57,14 @@ void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config
 		.past_index = (TRANSITIONS_PER_PULSE / 2) * (int32_t)config->encoder_pulses_per_rev,
 		/* Half-way between two transitions: a fresh encoder does not sit on an edge. */
 		.fraction = 0.5,
+		.index_open = config->encoder_index_open,
 	};
+	wire_encoder(drum, config);
+	for (int channel = 0; channel < 2; channel++) {
+		if (config->encoder_fault[channel] != LW_PLANT_CHANNEL_OK) {
+			lw_plant_drum_channel(drum, channel, config->encoder_fault[channel], 0);
+		}
+	}
 }
 
 /** The profile's speed at a time; the profile ends with its last point. */
@@ -136,10 +162,12 @@ static bool through_wire(const struct lw_plant_drum *drum, int channel, bool lev
 /** A leads B for rising positions: 00, 10, 11, 01. */
 static uint32_t show(struct lw_plant *plant, int64_t transitions)
 {
-	uint32_t shown =
-		(uint32_t)(transitions + plant->drum.extra_transitions + plant->drum.dithered);
-	bool a = through_wire(&plant->drum, 0, ((shown ^ (shown >> 1)) & 1u) != 0);
-	bool b = through_wire(&plant->drum, 1, ((shown >> 1) & 1u) != 0);
+	const struct lw_plant_drum *drum = &plant->drum;
+	uint32_t shown = (uint32_t)(drum->wired_direction * (transitions + drum->extra_transitions +
+							     drum->dithered) +
+				    drum->wired_offset);
+	bool a = through_wire(drum, 0, ((shown ^ (shown >> 1)) & 1u) != 0);
+	bool b = through_wire(drum, 1, ((shown >> 1) & 1u) != 0);
 	uint32_t changed = 0;
 
 	if (a != plant->pins.encoder_a) {
@@ -236,6 +264,11 @@ void lw_plant_drum_channel(struct lw_plant_drum *drum, int channel, uint8_t faul
 				   ? now_ns
 				   : LW_PLANT_NEVER_NS;
 	drum->wires_changed = true;
+}
+
+void lw_plant_drum_show(struct lw_plant *plant)
+{
+	(void)show(plant, plant->drum.transitions);
 }
 
 uint32_t lw_plant_drum_wires(struct lw_plant *plant)

@@ -23,6 +23,8 @@ uint32_t lw_plant_drum_dither(struct lw_plant *plant);
 void lw_plant_drum_note_plain(struct lw_plant_drum *drum);
 /** Execute what is due at the encoder's wires now. @return pins that changed */
 uint32_t lw_plant_drum_wires(struct lw_plant *plant);
+/** Bring the encoder's pins to where the drum is. */
+void lw_plant_drum_show(struct lw_plant *plant);
 /** A wire of the encoder breaks, or is mended: enum lw_plant_channel_fault. */
 void lw_plant_drum_channel(struct lw_plant_drum *drum, int channel, uint8_t fault, uint64_t now_ns);
 

@@ -7,7 +7,9 @@
 
 void lw_plant_switch_init(struct lw_plant_switch *contact, double position_usteps)
 {
-	contact->actuated = contact->outward * position_usteps >= contact->trigger_usteps;
+	contact->actuated = contact->fault == LW_PLANT_SWITCH_STUCK_ACTUATED ||
+			    (contact->fault != LW_PLANT_SWITCH_STUCK_RELEASED &&
+			     contact->outward * position_usteps >= contact->trigger_usteps);
 	contact->closed = true;
 	contact->pole_ns = LW_PLANT_NEVER_NS;
 	contact->contact_ns = LW_PLANT_NEVER_NS;
@@ -83,20 +85,30 @@ uint32_t lw_plant_switch_pins(struct lw_plant *plant)
 
 		no_closed = no_closed || shorted;
 		nc_closed = nc_closed || shorted;
-		if (no_closed != plant->pins.limit[side].no_closed ||
-		    nc_closed != plant->pins.limit[side].nc_closed) {
-			changed |= (uint32_t)LW_PLANT_LIMIT_PLUS << side;
-		}
-		plant->pins.limit[side].no_closed = no_closed;
-		plant->pins.limit[side].nc_closed = nc_closed;
+		if (contact->contacts_swapped) {
+			const bool swapped = no_closed;
 
+			no_closed = nc_closed;
+			nc_closed = swapped;
+		}
+
+		const int limit_pin = side ^ (int)plant->limit_swapped;
+
+		if (no_closed != plant->pins.limit[limit_pin].no_closed ||
+		    nc_closed != plant->pins.limit[limit_pin].nc_closed) {
+			changed |= (uint32_t)LW_PLANT_LIMIT_PLUS << limit_pin;
+		}
+		plant->pins.limit[limit_pin].no_closed = no_closed;
+		plant->pins.limit[limit_pin].nc_closed = nc_closed;
+
+		const int overtravel_pin = side ^ (int)plant->overtravel_swapped;
 		bool overtravel = plant->overtravel[side].actuated ||
 				  plant->now_ns < plant->overtravel[side].blip_end_ns;
 
-		if (overtravel != plant->pins.overtravel[side]) {
-			changed |= (uint32_t)LW_PLANT_OVERTRAVEL_PLUS << side;
+		if (overtravel != plant->pins.overtravel[overtravel_pin]) {
+			changed |= (uint32_t)LW_PLANT_OVERTRAVEL_PLUS << overtravel_pin;
 		}
-		plant->pins.overtravel[side] = overtravel;
+		plant->pins.overtravel[overtravel_pin] = overtravel;
 	}
 	return changed;
 }

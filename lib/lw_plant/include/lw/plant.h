@@ -69,7 +69,11 @@ enum lw_plant_changed {
 	LW_PLANT_TRIM_BUTTONS = 1 << 8,
 };
 
-/** Physical constants. Fill with lw_plant_config_default(), then change what differs. */
+/**
+ * A machine: its physical constants, how it is wired, and what is broken from the beginning. Fill
+ * with lw_plant_config_default(), then change what differs, by member or by name
+ * (lw/plant_figures.h).
+ */
 struct lw_plant_config {
 	/** Encoder pulses per encoder revolution; a pulse has four A/B transitions. */
 	uint32_t encoder_pulses_per_rev;
@@ -90,6 +94,8 @@ struct lw_plant_config {
 	double holding_acceleration_mm_per_s2;
 	/** Speed v_half at which that has fallen to a half: a(v) = a0 / (1 + |v| / v_half). */
 	double half_torque_speed_mm_per_s;
+	/** Speed at which nothing is left of it; it falls straight to there. 0: never. */
+	double top_speed_mm_per_s;
 	/** Damping of the rotor in its field, as a fraction of critical damping at standstill. */
 	double damping_ratio;
 	/** Coulomb friction, sliding and at rest. */
@@ -116,6 +122,22 @@ struct lw_plant_config {
 
 	/** The motor turns the wrong way. */
 	bool carriage_reversed;
+	/** Each encoder channel is wired to the other's pin. */
+	bool encoder_swapped;
+	/** Channel A, B reads low where it is high. */
+	bool encoder_inverted[2];
+	/** The encoder's index channel is not wired. */
+	bool encoder_index_open;
+	/** Each limit switch, each overtravel switch, is wired to the other side's pins. */
+	bool limit_swapped;
+	bool overtravel_swapped;
+	/** A limit switch's NO and NC wires are exchanged. */
+	bool limit_contacts_swapped[LW_PLANT_SIDES];
+	/** enum lw_plant_switch_fault, and of an overtravel switch without the wires. */
+	uint8_t limit_fault[LW_PLANT_SIDES];
+	uint8_t overtravel_fault[LW_PLANT_SIDES];
+	/** enum lw_plant_channel_fault of channel A, B. */
+	uint8_t encoder_fault[2];
 };
 
 /** Levels that the controller can see. Written by lw_plant_advance() only; the host reads. */
@@ -267,6 +289,7 @@ struct lw_plant_switch {
 	int8_t outward;
 	bool actuated;
 	bool closed;
+	bool contacts_swapped;
 };
 
 /** Private: the drum and its encoder. */
@@ -296,6 +319,8 @@ struct lw_plant_drum {
 	uint32_t dither_changes;
 	uint32_t extra_changes;
 	int8_t direction;
+	int8_t wired_direction; /* as the wires show it: -1 counts backward */
+	uint8_t wired_offset;   /* and from this transition */
 	bool dithered;
 	uint8_t channel_fault[2];
 	bool channel_open[2];
@@ -321,6 +346,7 @@ struct lw_plant_carriage {
 	double period_usteps;
 	double holding_usteps_per_s2;
 	double half_torque_usteps_per_s;
+	double top_s_per_ustep; /* 1 / top speed; 0: none */
 	double damping_per_s;
 	double friction_usteps_per_s2;
 	double flange_usteps;
@@ -358,6 +384,8 @@ struct lw_plant {
 	struct lw_plant_drum drum;
 	struct lw_plant_rope rope;
 	bool trim_pressed[2];
+	bool limit_swapped;
+	bool overtravel_swapped;
 	struct lw_plant_carriage carriage;
 	struct lw_plant_switch limit[LW_PLANT_SIDES];
 	struct lw_plant_switch overtravel[LW_PLANT_SIDES];
@@ -372,6 +400,23 @@ struct lw_plant {
  */
 void lw_plant_config_default(struct lw_plant_config *config);
 
+/** Why a configuration is no machine: this figure must be in that relation to the other one. */
+struct lw_plant_misfit {
+	const char *figure;  /**< by its name in lw/plant_figures.h */
+	const char *must_be; /**< "more than", "less than", ... */
+	const char *other;   /**< a figure, or words; may be "" */
+};
+
+/**
+ * @brief Whether a configuration is a machine.
+ *
+ * @param why receives what is wrong
+ *
+ * @retval 0       lw_plant_init() takes it
+ * @retval -EINVAL a constant is out of range, or does not fit another one
+ */
+int lw_plant_config_check(const struct lw_plant_config *config, struct lw_plant_misfit *why);
+
 /**
  * @brief Start a plant at time 0: drum at rest, motor current off, carriage at its start position.
  *
@@ -380,9 +425,7 @@ void lw_plant_config_default(struct lw_plant_config *config);
  * @param seed   any value; equal seeds give equal traces
  *
  * @retval 0       ready
- * @retval -EINVAL a constant is zero that must not be, negative, not finite, or above 1 s; or the
- *                 electrical period is no whole number of microsteps; or the positions are not in
- *                 the order limit, overtravel, flange on both sides; the plant is unchanged
+ * @retval -EINVAL lw_plant_config_check() says why; the plant is unchanged
  */
 int lw_plant_init(struct lw_plant *plant, const struct lw_plant_config *config, uint64_t seed);
 
@@ -455,6 +498,12 @@ static inline struct lw_plant_run lw_plant_run_begin(const struct lw_plant *plan
 	};
 }
 
+/** @brief Which way the encoder's pins count in a run: +1 or -1. */
+static inline int lw_plant_run_direction(const struct lw_plant *plant)
+{
+	return plant->drum.direction * plant->drum.wired_direction;
+}
+
 /** @brief Execute the next transition of a run. @return whether the index pulse begins with it */
 static inline bool lw_plant_run_next(struct lw_plant_run *run)
 {
@@ -490,7 +539,8 @@ static inline void lw_plant_run_end(struct lw_plant *plant, struct lw_plant_run 
 	drum->offset_ns = run->next_ns;
 	drum->transition_ns = run->next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)run->next_ns
 								 : LW_PLANT_NEVER_NS;
-	shown = (unsigned int)(drum->transitions + drum->shown_ahead);
+	shown = (unsigned int)(drum->wired_direction * (drum->transitions + drum->shown_ahead) +
+			       drum->wired_offset);
 	plant->pins.encoder_a = ((shown ^ shown >> 1) & 1u) != 0;
 	plant->pins.encoder_b = (shown >> 1 & 1u) != 0;
 	plant->pins.encoder_index = past_index == 0 && !drum->index_open;

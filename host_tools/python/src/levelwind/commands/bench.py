@@ -14,8 +14,12 @@ from levelwind.line.plant import check_plant
 from levelwind.line.points import enum_label
 from levelwind.map_table import State
 from levelwind.show.output import console, print_json, print_table, warn
-from levelwind.simulate import launches, simulator
+from levelwind.simulate import launches, machine, simulator
 
+MachineFile = Annotated[
+    Path | None,
+    typer.Option("--machine", help="Simulate this machine (doc/machine.md).", metavar="FILE.yaml"),
+]
 Speed = Annotated[str | None, typer.Option("--speed", help="Factor of real time, or max.")]
 
 
@@ -34,11 +38,16 @@ def sim(
         str | None,
         typer.Option(help="Serve Modbus TCP there, and no port.", metavar="ADDRESS:PORT"),
     ] = None,
+    machine_file: MachineFile = None,
 ) -> None:
     """Run the simulator until Ctrl-C: a Modbus slave and a plant. Prints `ready PATH`."""
     path = None if tcp else port
-    line = simulator.arguments(path, speed, seed, storage, trace, unit, frame_silence_ms, tcp)
-    simulator.become(line)
+    winch = machine.read(machine_file) if machine_file else None
+    simulator.become(
+        simulator.arguments(
+            path, speed, seed, storage, trace, unit, frame_silence_ms, tcp, machine=winch
+        )
+    )
 
 
 @with_device

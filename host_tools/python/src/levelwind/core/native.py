@@ -83,6 +83,28 @@ class Refusal(ctypes.Structure):
     )
 
 
+class _Figure(ctypes.Structure):
+    """struct lw_plant_figure."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("min", ctypes.c_double),
+        ("max", ctypes.c_double),
+        ("words", ctypes.POINTER(ctypes.c_char_p)),
+        ("whole", ctypes.c_bool),
+    )
+
+
+class _Misfit(ctypes.Structure):
+    """struct lw_plant_misfit."""
+
+    _fields_ = (
+        ("figure", ctypes.c_char_p),
+        ("must_be", ctypes.c_char_p),
+        ("other", ctypes.c_char_p),
+    )
+
+
 def find(name: str) -> Path:
     """The path of a compiled file."""
     folders = [Path(__file__).parents[1] / "_native", *_source_builds()]
@@ -122,6 +144,8 @@ def library() -> ctypes.CDLL:
             "struct lw_native_replay_result": _ReplayResult,
             "struct lw_native_derived": _Derived,
             "struct lw_refusal": Refusal,
+            "struct lw_plant_figure": _Figure,
+            "struct lw_plant_misfit": _Misfit,
         },
     )
     loaded.lw_native_replay.argtypes = (
@@ -137,6 +161,15 @@ def library() -> ctypes.CDLL:
         ctypes.POINTER(I32),
         ctypes.POINTER(_Derived),
         ctypes.POINTER(Refusal),
+    )
+    loaded.lw_native_machine_default.argtypes = (ctypes.c_char_p,)
+    loaded.lw_native_machine_default.restype = ctypes.c_double
+    loaded.lw_native_machine_check.argtypes = (
+        ctypes.POINTER(ctypes.c_char_p),
+        ctypes.POINTER(ctypes.c_double),
+        ctypes.c_size_t,
+        ctypes.POINTER(ctypes.c_size_t),
+        ctypes.POINTER(_Misfit),
     )
     return loaded
 
@@ -227,3 +260,67 @@ def replay(
         list(trace[: result.trace_count]),
         stride,
     )
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of the simulated machine (lw/plant_figures.h)."""
+
+    name: str
+    min: float
+    max: float
+    words: tuple[str, ...]
+    """What 0, 1, ... are called, where it is no number."""
+    whole: bool
+    default: float
+
+
+@cache
+def machine_figures() -> Mapping[str, Figure]:
+    """All figures of the simulated machine, by name."""
+    figures: dict[str, Figure] = {}
+    table = ctypes.cast(
+        ctypes.addressof(_Figure.in_dll(library(), "lw_plant_figures")), ctypes.POINTER(_Figure)
+    )
+    while (entry := table[len(figures)]).name is not None:
+        words: list[str] = []
+        while entry.words and entry.words[len(words)] is not None:
+            words.append(entry.words[len(words)].decode())
+        figures[entry.name.decode()] = Figure(
+            entry.name.decode(),
+            entry.min,
+            entry.max,
+            tuple(words),
+            entry.whole,
+            library().lw_native_machine_default(entry.name),
+        )
+    return figures
+
+
+class MisfitError(ToolError):
+    """Figures that each are right, and are no machine together: `figure` is to blame."""
+
+    def __init__(self, figure: str, text: str) -> None:
+        super().__init__(text)
+        self.figure = figure
+
+
+def check_machine(figures: Mapping[str, float]) -> None:
+    """Check figures against each other and the default's; MisfitError says what does not fit."""
+    known = machine_figures()
+    names = (ctypes.c_char_p * max(1, len(figures)))(*(name.encode() for name in figures))
+    values = (ctypes.c_double * max(1, len(figures)))(*figures.values())
+    wrong, why = ctypes.c_size_t(), _Misfit()
+    status = library().lw_native_machine_check(
+        names, values, len(figures), ctypes.byref(wrong), ctypes.byref(why)
+    )
+    if status == -errno.EINVAL:
+        blamed, other = why.figure.decode(), why.other.decode()
+        value = figures.get(blamed, known[blamed].default)
+        limit = f" {figures.get(other, known[other].default):g}" if other in known else ""
+        raise MisfitError(
+            blamed, f"{blamed}: {value:g} must be {why.must_be.decode()} {other}{limit}."
+        )
+    if status != 0:
+        name = list(figures)[wrong.value]
+        raise MisfitError(name, f"{name}: {figures[name]:g}: {os.strerror(-status)}.")

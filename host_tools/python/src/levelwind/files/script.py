@@ -22,7 +22,14 @@ from levelwind.files import yaml_file
 from levelwind.line.device import Device
 from levelwind.line.motion import INDEX_LIMIT_S, hold_jog
 from levelwind.line.plant import write_plant
-from levelwind.line.points import check_limits, format_value, lookup, parse_value, parse_whole
+from levelwind.line.points import (
+    check_limits,
+    format_value,
+    lookup,
+    parse_number,
+    parse_value,
+    parse_whole,
+)
 from levelwind.map_table import Command, Mode, Point
 
 WAIT_LIMIT_S = 30.0
@@ -268,7 +275,7 @@ def _fields(argument: object, kind: str, known: set[str]) -> Mapping[str, Any]:
 def _seconds(value: object, what: str) -> float:
     with yaml_file.at(value):
         try:
-            seconds = float(value) if isinstance(value, str | float) else 0.0
+            seconds = value if isinstance(value, float) else parse_number(value)
         except ValueError:
             seconds = 0.0
         if not 0 < seconds <= 3600:

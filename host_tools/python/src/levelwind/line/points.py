@@ -13,6 +13,7 @@ PARAMETERS = [point for point in POINTS.values() if point.block == "parameters"]
 REGISTERS_PER_READ = 125
 REGISTERS_PER_WRITE = 123
 NO_ADDRESS = 0xFFFF
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _WHOLE = re.compile(r"[+-]?(?:0[xX][0-9a-fA-F]+|[0-9]+)")
 # Their limit is the first value that is refused; that of the others the last one that is taken.
 INSIDE_REASONS = (
@@ -106,6 +107,13 @@ def parse_whole(given: object) -> int:
         return given
     if isinstance(given, str) and _WHOLE.fullmatch(given):
         return int(given, 16 if "x" in given.lower() else 10)
+    raise ValueError
+
+
+def parse_number(given: object) -> float:
+    """A number as people write it: 20, -78.4, 3e4. ValueError if it is none."""
+    if isinstance(given, str) and _NUMBER.fullmatch(given):
+        return float(given)
     raise ValueError
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from levelwind.core import native
 from levelwind.errors import ToolError
+from levelwind.simulate.machine import Machine
 
 START_LIMIT_S = 10.0
 END_LIMIT_S = 10.0
@@ -23,6 +24,7 @@ def arguments(
     unit: int | None = None,
     frame_silence_ms: int | None = None,
     tcp: str | None = None,
+    machine: Machine | None = None,
 ) -> list[str]:
     """The command line of lw_sim: at a port, or at ADDRESS:PORT for Modbus TCP."""
     given = {
@@ -39,7 +41,7 @@ def arguments(
     for name, value in given.items():
         if value is not None:
             line += [f"--{name}", str(value)]
-    return line
+    return line + (machine.arguments() if machine else [])
 
 
 def become(line: list[str]) -> None:

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Machines of other people: with the parameters that are right for them they index and track, and
+what is wrong in a machine is to be seen in its truth."""
+
+import pytest
+from levelwind.map_table import Command, Fault, Mode
+from levelwind.simulate import machine
+from world import USTEP, World
+
+LEAD, USTEPS, PULSES = "screw_lead_mm", "microsteps_per_rev", "encoder_pulses_per_rev"
+OVER, UNDER = "encoder_ratio_numerator", "encoder_ratio_denominator"
+SWAPPED, INVERT_A, INVERT_B = "encoder_channels_swapped", "encoder_a_inverted", "encoder_b_inverted"
+DRUM_MILLIRPM = 400_000
+
+
+def sides(plus_mm: float, minus_mm: float, overtravel_mm: float, end_mm: float) -> dict[str, float]:
+    return {
+        "switch_plus_mm": plus_mm,
+        "switch_minus_mm": minus_mm,
+        "overtravel_mm": overtravel_mm,
+        "end_stop_mm": end_mm,
+    }
+
+
+RIGHT = {
+    "default": {},
+    "fine lead": {LEAD: 5, USTEPS: 1600, **sides(30, -30, 36, 40)},
+    "fine microsteps": {LEAD: 20, USTEPS: 6400, **sides(40, -40, 46, 48)},
+    "long lead": {LEAD: 50, USTEPS: 2000, **sides(200, -200, 212, 220)},
+    "inch lead": {LEAD: 12.7, USTEPS: 2000, **sides(78.4, -78.4, 86, 90)},
+    "belt": {LEAD: 100, USTEPS: 6400, **sides(150, -150, 160, 166)},
+    "0.9 degree motor": {"full_steps_per_rev": 400, USTEPS: 3200},
+    "5-phase-like motor": {"full_steps_per_rev": 500, USTEPS: 5000, **sides(50, -50, 56, 60)},
+    "100 pulses": {PULSES: 100, OVER: 7, UNDER: 2},
+    "1024 pulses on the drum": {PULSES: 1024, OVER: 1},
+    "2500 pulses on the drum": {PULSES: 2500, OVER: 1},
+    "odd ratio": {PULSES: 500, OVER: 7, UNDER: 3},
+    "counts backward": {SWAPPED: 1},
+    "channel A inverted": {INVERT_A: 1},
+    "channel B inverted": {INVERT_B: 1},
+    "both inverted, swapped": {SWAPPED: 1, INVERT_A: 1, INVERT_B: 1},
+    "motor reversed": {"motor_reversed": 1},
+    "off the middle": sides(60, -72.5, 80, 84),
+    "all but one side": sides(78.4, 2, 86, 90),
+    "late switches": {"switch_late_ms": 4, "contact_travel_ms": 3, "bounce_ms": 8},
+    "everything": {
+        LEAD: 32,
+        USTEPS: 3200,
+        PULSES: 600,
+        OVER: 5,
+        UNDER: 3,
+        SWAPPED: 1,
+        INVERT_B: 1,
+        "motor_reversed": 1,
+        "start_mm": -40,
+        **sides(95.5, -101.25, 110, 114),
+    },
+}
+
+
+def started(figures: dict[str, float]) -> tuple[World, machine.Machine]:
+    winch = machine.make(figures)
+    return World(machine=winch.given, **winch.parameters()), winch
+
+
+def turn(world: World, millirpm: int) -> None:
+    world.write(bench_drum_acceleration_millirpm_per_s=200_000, bench_drum_speed_millirpm=millirpm)
+
+
+@pytest.mark.parametrize("figures", RIGHT.values(), ids=RIGHT)
+def test_a_right_machine_indexes_and_tracks(figures: dict[str, float]):
+    world, winch = started(figures)
+    world.index()
+    um = winch.um_per_ustep
+    # A switch is read in the millisecond after its contact, at 40 mm/s; a microstep for the rest.
+    reading_um = 50 + 2 * um
+    assert abs(world.error_usteps * um) < reading_um
+    assert abs(world.value("span_error_um")) < 2 * reading_um
+    world.mode(Mode.TRACK)
+    turn(world, DRUM_MILLIRPM)
+    reached = []
+    for _ in range(600):
+        world.run(0.02)
+        reached.append(world.truth.carriage_um / 1000)
+    turn(world, -DRUM_MILLIRPM)
+    world.run(5)
+    assert world.permit, f"{world}"
+    assert not world.flags & {"los", "los_1_plus", "los_1_minus", "los_2_plus", "los_2_minus"}
+    truth = world.truth
+    assert truth.pole_slips == 0
+    assert abs(truth.carriage_usteps - world.value("m") / USTEP) * um < reading_um + 60
+    assert max(reached) > winch["switch_plus_mm"] - 2
+    assert min(reached) < winch["switch_minus_mm"] + 2
+    assert max(map(abs, reached)) < winch["overtravel_mm"]
+
+
+def test_the_drum_of_a_right_machine_is_counted_right():
+    world, winch = started(RIGHT["everything"])
+    turn(world, DRUM_MILLIRPM)
+    world.run(3)
+    # 2 s to the speed, 1 s at it
+    turns = 2 * DRUM_MILLIRPM / 60_000
+    assert float(world.truth.drum_transitions / winch.transitions_per_drum_rev) == pytest.approx(
+        turns, rel=0.001
+    )
+    edges_per_rev = world.value("edges_per_1000_drum_revs") / 1000
+    assert world.value("net_edges") / edges_per_rev == pytest.approx(turns, rel=0.001)
+
+
+# ---- what is wrong -------------------------------------------------------------------------------
+
+
+def wrong(**figures: float) -> World:
+    """A machine whose builder believes in the default one."""
+    believed = machine.make({}).parameters()
+    return World(machine=machine.make(figures).given, **believed)
+
+
+@pytest.mark.parametrize(
+    ("figures", "real_per_believed"),
+    [
+        ({"screw_lead_mm": 10}, 0.5),
+        ({"microsteps_per_rev": 1000}, 2),
+        ({"screw_lead_mm": 25}, 1.25),
+    ],
+)
+def test_another_lead_or_microsteps_is_another_way(
+    figures: dict[str, float], real_per_believed: float
+):
+    world = wrong(**figures)
+    for _ in range(10):
+        world.write(jog=1)
+        world.run(0.1)
+    world.write(jog=0)
+    world.run(0.5)
+    believed_um = world.value("steps") * 10  # unindexed there is no position: the steps tell
+    assert believed_um > 10_000
+    assert world.truth.carriage_um == pytest.approx(believed_um * real_per_believed, abs=20)
+
+
+def test_another_lead_fails_the_span_check():
+    world = wrong(screw_lead_mm=19)
+    assert world.index_faulted() == Fault.INDEX_SPAN
+
+
+def test_a_reversed_motor_moves_the_other_way():
+    world = wrong(motor_reversed=1)
+    for _ in range(5):
+        world.write(jog=1)
+        world.run(0.1)
+    assert world.truth.carriage_um < -1000
+
+
+@pytest.mark.parametrize(
+    ("figures", "factor"),
+    [
+        ({"encoder_pulses_per_rev": 500}, 500 / 360),
+        ({"encoder_ratio_numerator": 3}, 3 / 4),
+        ({"encoder_ratio_denominator": 2}, 1 / 2),
+        ({"encoder_channels_swapped": 1}, -1),
+        ({"encoder_a_inverted": 1}, -1),
+        ({"encoder_b_inverted": 1}, -1),
+        ({"encoder_a_inverted": 1, "encoder_b_inverted": 1}, 1),
+    ],
+)
+def test_another_encoder_counts_other_edges(figures: dict[str, float], factor: float):
+    world = wrong(**figures)
+    turn(world, 60_000)
+    world.run(10)
+    right = wrong()
+    turn(right, 60_000)
+    right.run(10)
+    assert world.value("net_edges") == pytest.approx(right.value("net_edges") * factor, abs=2)
+    assert world.value("illegal_transitions") == 0
+
+
+def test_swapped_limit_switches_are_the_wrong_one():
+    world = wrong(limit_switches_swapped=1)
+    assert world.index_faulted() == Fault.INDEX_WRONG_SWITCH
+    assert world.truth.carriage_um > 70_000  # it has gone plus, and minus told
+
+
+@pytest.mark.parametrize(
+    ("figure", "flag"),
+    [("switch_plus_contacts_swapped", "switch_plus"), ("overtravel_plus_fault", "overtravel_plus")],
+)
+def test_a_contact_that_is_wrong_from_the_beginning_is_told(figure: str, flag: str):
+    world = wrong(**{figure: 2 if figure.endswith("fault") else 1})
+    assert flag in world.flags
+    assert flag not in wrong().flags
+
+
+def test_swapped_overtravel_switches_tell_of_each_other():
+    world = wrong(overtravel_switches_swapped=1, start_mm=88)
+    assert "overtravel_minus" in world.flags
+    assert "overtravel_plus" not in world.flags
+
+
+def test_a_weak_motor_slips():
+    figures = {"holding_acceleration_mm_per_s2": 6000, "top_speed_mm_per_s": 60}
+    pull_out = machine.make(figures).pull_out_mm_per_s()
+    assert 40 < pull_out < 60
+    slipped = {}
+    for share in (0.8, 1.2):
+        world = wrong(**figures)
+        mm_per_edge = 12 / 2880
+        world.apply(index_rate_edges_per_s=round(share * pull_out / mm_per_edge))
+        world.write(command=Command.INDEX)
+        world.run(1.0)
+        slipped[share] = world.truth.pole_slips
+    assert slipped[0.8] == 0
+    assert slipped[1.2] > 10
