@@ -13,6 +13,7 @@
 
 #include "host.h"
 #include "lw/plant_figures.h"
+#include "machine.h"
 #include "port.h"
 #include "tcp.h"
 #include "world.h"
@@ -29,6 +30,9 @@
  */
 #define PTY_SILENCE_US 2000u
 
+/** More figures than a machine has would be some twice. */
+#define FIGURES_MAX 128u
+
 struct options {
 	const char *port; /**< NULL: none */
 	const char *tcp;  /**< NULL: none */
@@ -36,7 +40,9 @@ struct options {
 	const char *trace;
 	double speed; /**< 0: as fast as it can */
 	uint64_t seed;
-	struct lw_plant_config machine;
+	const char *figures[FIGURES_MAX];
+	size_t figure_count;
+	bool as_parameters;
 	uint8_t unit_id;
 	uint32_t silence_us; /**< 0: by the port */
 };
@@ -66,7 +72,7 @@ static void usage(FILE *stream)
 	fputs("usage: lw_sim --port PATH | --tcp ADDRESS:PORT [--speed FACTOR|max] [--seed N] \n"
 	      "              [--storage FILE] [--trace FILE.csv] [--unit N] [--figure NAME=VALUE "
 	      "...]\n"
-	      "              [--frame-silence-ms N]\n"
+	      "              [--frame-silence-ms N] [--as-parameters]\n"
 	      "\n"
 	      "  --port PATH      serial port to answer on, or where to make a link to a pseudo "
 	      "terminal\n"
@@ -77,6 +83,7 @@ static void usage(FILE *stream)
 	      "  --storage FILE   keeps parameters, event log and counters (default: in memory)\n"
 	      "  --trace FILE     write one line per millisecond in which something moves\n"
 	      "  --unit N         Modbus unit id (default: the stored one, at first 1)\n"
+	      "  --as-parameters  the machine that the stored parameters describe\n"
 	      "  --figure NAME=VALUE\n"
 	      "                   another figure of the machine, as screw_lead_mm=10 "
 	      "(doc/machine.md)\n"
@@ -175,6 +182,7 @@ static bool parse_options(int argc, char **argv, struct options *options)
 		{"trace", required_argument, NULL, 't'},
 		{"unit", required_argument, NULL, 'u'},
 		{"figure", required_argument, NULL, 'm'},
+		{"as-parameters", no_argument, NULL, 'a'},
 		{"frame-silence-ms", required_argument, NULL, 'i'},
 		{"help", no_argument, NULL, 'h'},
 		{NULL, 0, NULL, 0},
@@ -183,7 +191,6 @@ static bool parse_options(int argc, char **argv, struct options *options)
 	int name;
 
 	*options = (struct options){.speed = 1, .seed = 1};
-	lw_plant_config_default(&options->machine);
 	while ((name = getopt_long(argc, argv, "h", names, NULL)) != -1) {
 		switch (name) {
 		case 'p':
@@ -216,9 +223,15 @@ static bool parse_options(int argc, char **argv, struct options *options)
 			options->unit_id = (uint8_t)number;
 			break;
 		case 'm':
-			if (!parse_figure(optarg, &options->machine)) {
+			if (options->figure_count == FIGURES_MAX) {
+				fprintf(stderr, "lw_sim: --figure: at most %u of them\n",
+					FIGURES_MAX);
 				return false;
 			}
+			options->figures[options->figure_count++] = optarg;
+			break;
+		case 'a':
+			options->as_parameters = true;
 			break;
 		case 'i':
 			if (!parse_number("frame-silence-ms", optarg, 1, 1000, &number)) {
@@ -262,6 +275,37 @@ static size_t read_slot(void *context, unsigned int slot, uint8_t *bytes, size_t
 	const struct simulator *simulator = context;
 
 	return lw_host_read_at(simulator->storage_fd, bytes, size, slot_offset(slot));
+}
+
+/** The default machine, or the one that the stored set describes, and the figures that differ. */
+static bool make_machine(struct simulator *simulator, struct lw_plant_config *machine)
+{
+	const struct options *options = &simulator->options;
+	struct lw_store *store = &simulator->world.store; /* powering up loads it again */
+	uint8_t bytes[LW_STORE_SLOT_SIZE];
+	struct lw_plant_misfit why;
+
+	lw_plant_config_default(machine);
+	if (options->as_parameters) {
+		lw_store_init(store);
+		for (unsigned int slot = 0; options->storage != NULL && slot < LW_STORE_SLOTS;
+		     slot++) {
+			lw_store_load(store, slot, bytes,
+				      read_slot(simulator, slot, bytes, sizeof(bytes)));
+		}
+		lw_machine_of_params(&store->params, machine);
+	}
+	for (size_t i = 0; i < options->figure_count; i++) {
+		if (!parse_figure(options->figures[i], machine)) {
+			return false;
+		}
+	}
+	if (lw_plant_config_check(machine, &why)) {
+		fprintf(stderr, "lw_sim: --figure %s: must be %s %s\n", why.figure, why.must_be,
+			why.other);
+		return false;
+	}
+	return true;
 }
 
 /**
@@ -349,12 +393,14 @@ static bool serve_port(struct simulator *simulator)
 		if (lw_port_echo_changed(&simulator->port)) {
 			lw_slave_reconfigure(slave);
 		}
+		(void)lw_plant_disturb(&simulator->world.plant, bytes, (size_t)count);
 		lw_slave_receive(slave, bytes, (size_t)count, lw_host_now_ns() / 1000);
 	}
 
 	const size_t length = lw_slave_poll(slave, lw_host_now_ns() / 1000, bytes);
 
 	if (length > 0) {
+		(void)lw_plant_disturb(&simulator->world.plant, bytes, length);
 		lw_port_write(&simulator->port, bytes, length);
 	}
 
@@ -471,15 +517,10 @@ int main(int argc, char **argv)
 {
 	static struct simulator simulator; /* large: off the stack */
 	struct lw_world_config config;
-	struct lw_plant_misfit why;
+	struct lw_plant_config machine;
 	int ret;
 
 	if (!parse_options(argc, argv, &simulator.options)) {
-		return 2;
-	}
-	if (lw_plant_config_check(&simulator.options.machine, &why)) {
-		fprintf(stderr, "lw_sim: --figure %s must be %s %s\n", why.figure, why.must_be,
-			why.other);
 		return 2;
 	}
 	if (simulator.options.storage != NULL) {
@@ -489,12 +530,16 @@ int main(int argc, char **argv)
 		}
 	}
 
+	if (!make_machine(&simulator, &machine)) {
+		return 2;
+	}
+
 	const bool is_serial =
 		simulator.options.port != NULL && lw_port_is_serial(simulator.options.port);
 
 	config = (struct lw_world_config){
 		.seed = simulator.options.seed,
-		.machine = &simulator.options.machine,
+		.machine = &machine,
 		.silence_us = simulator.options.silence_us != 0 ? simulator.options.silence_us
 			      : is_serial                       ? 0
 								: PTY_SILENCE_US,

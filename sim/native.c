@@ -8,11 +8,13 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "lw/bytes/layout.h"
 #include "lw/motion/law.h"
 #include "lw/control/params.h"
 #include "lw/plant_figures.h"
+#include "machine.h"
 #include "world.h"
 
 /** A law to replay. Positions and slopes Q16.16 where not in microsteps. */
@@ -208,6 +210,17 @@ int lw_native_machine_check(const char *const *names, const double *values, size
 	return ret != 0 ? ret : lw_plant_config_check(&machine, why);
 }
 
+/** A figure of the machine that a parameter set describes, given as its values in map order. */
+double lw_native_machine_of_params(const int32_t *values, const char *name)
+{
+	struct lw_plant_config machine;
+	double value = 0.0;
+
+	lw_machine_of_params((const struct lw_params *)values, &machine);
+	(void)lw_plant_config_get(&machine, name, &value);
+	return value;
+}
+
 /** A figure of the default machine. */
 double lw_native_machine_default(const char *name)
 {
@@ -270,12 +283,22 @@ size_t lw_native_world_line(struct lw_world *world, const uint8_t *bytes, size_t
 	const uint64_t end_ns = world->now_ns + duration_ns;
 	uint64_t deadline_us;
 	size_t length = 0;
+	uint8_t heard[LW_RTU_FRAME_MAX];
 
-	lw_slave_receive(slave, bytes, count, world->now_ns / 1000u);
+	do {
+		const size_t part = count < sizeof(heard) ? count : sizeof(heard);
+
+		memcpy(heard, bytes, part);
+		(void)lw_plant_disturb(&world->plant, heard, part);
+		lw_slave_receive(slave, heard, part, world->now_ns / 1000u);
+		bytes += part;
+		count -= part;
+	} while (count > 0);
 	deadline_us = lw_slave_deadline_us(slave);
 	if (deadline_us <= end_ns / 1000u) {
 		lw_world_run(world, deadline_us * 1000u);
 		length = lw_slave_poll(slave, deadline_us, answer);
+		(void)lw_plant_disturb(&world->plant, answer, length);
 	}
 	lw_world_run(world, end_ns);
 	return length;
@@ -360,6 +383,8 @@ const struct lw_layout lw_layout_native[] = {
 	LW_LAYOUT_MEMBER(lw_plant_truth, slipped_usteps),
 	LW_LAYOUT_MEMBER(lw_plant_truth, pole_slips),
 	LW_LAYOUT_MEMBER(lw_plant_truth, in_sync),
+	LW_LAYOUT_MEMBER(lw_plant_truth, coupling_slip_um),
+	LW_LAYOUT_MEMBER(lw_plant_truth, limit_um),
 	LW_LAYOUT_MEMBER(lw_plant_truth, rope_um),
 	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_STALL),
 	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_SLIP),

@@ -80,6 +80,8 @@ class Truth(ctypes.Structure):
         ("slipped_usteps", c_int64),
         ("pole_slips", c_uint64),
         ("in_sync", c_bool),
+        ("coupling_slip_um", c_double),
+        ("limit_um", c_double * 2),
         ("rope_um", c_double),
     )
 

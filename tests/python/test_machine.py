@@ -103,6 +103,55 @@ def test_the_simulator_gets_what_differs():
     assert line[-4:] == ["--figure", "screw_lead_mm=12.7", "--figure", "motor_reversed=1"]
 
 
+def test_parameters_describe_the_machine_that_they_are_right_for():
+    """Machine to parameters and back."""
+    figures = {
+        "encoder_pulses_per_rev": 600,
+        "encoder_ratio_numerator": 5,
+        "encoder_ratio_denominator": 3,
+        "screw_lead_mm": 12.7,
+        "microsteps_per_rev": 1600,
+        "switch_plus_mm": 60.5,
+        "switch_minus_mm": -72.25,
+        "overtravel_mm": 80,
+        "end_stop_mm": 84,
+        "switch_late_ms": 2.5,
+        "motor_reversed": 1,
+        "encoder_channels_swapped": 1,
+        "encoder_b_inverted": 1,
+    }
+    described = machine.describing(machine.make(figures).parameters())
+    for name, value in figures.items():
+        tolerance = 1.5 if name == "overtravel_mm" else 1e-9  # no parameter tells where it is
+        assert described[name] == pytest.approx(value, abs=tolerance), name
+    factory = machine.describing({p.name: p.default or 0 for p in PARAMETERS})
+    assert dict(factory.figures) == dict(machine.make({}).figures)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {
+            "switch_plus_um": 78_400,
+            "switch_minus_um": 2_000,
+            "reversal_minus_um": 0,
+            "flange_minus_um": -3_000,
+        },
+        {"travel_um": 166_000},
+        {"microsteps_per_rev": 1999},
+        {"switch_hysteresis_um": 100},
+        {"switch_delay_us": 300},
+    ],
+)
+def test_every_set_describes_a_machine(changes: dict[str, int]):
+    values = {p.name: p.default or 0 for p in PARAMETERS} | changes
+    if "switch_minus_um" in changes:
+        values["centre_position_um"] = 40_000
+    winch = machine.describing(values)
+    assert winch["switch_minus_mm"] * 1000 == values["switch_minus_um"]
+    assert winch["start_mm"] <= winch["switch_plus_mm"]
+
+
 def test_pull_out_is_where_the_motor_pulls_as_much_as_it_needs():
     winch = machine.make({
         "holding_acceleration_mm_per_s2": 8000,

@@ -2,7 +2,11 @@
 """Machines of other people: with the parameters that are right for them they index and track, and
 what is wrong in a machine is to be seen in its truth."""
 
+import itertools
+import statistics
+
 import pytest
+from levelwind.line.rtu import sealed
 from levelwind.map_table import Command, Fault, Mode
 from levelwind.simulate import machine
 from world import USTEP, World
@@ -194,6 +198,63 @@ def test_swapped_overtravel_switches_tell_of_each_other():
     world = wrong(overtravel_switches_swapped=1, start_mm=88)
     assert "overtravel_minus" in world.flags
     assert "overtravel_plus" not in world.flags
+
+
+def test_backlash_shows_at_the_other_switch():
+    believed = machine.make({}).parameters() | {"span_tolerance_um": 2000}
+    spans = {}
+    for backlash_mm in (0, 0.6):
+        world = World(machine={"backlash_mm": backlash_mm}, **believed)
+        spans[backlash_mm] = world.index().value("span_error_um")
+    # From the indexing switch to the other one the screw has gone it more than the carriage.
+    assert abs(spans[0.6] - spans[0]) == pytest.approx(600, abs=50)
+
+
+def test_a_loose_coupling_loses_the_place_while_every_step_is_made():
+    world = wrong(coupling_grip_mm_per_s2=900)  # 400 after friction: enough for an indexing
+    world.index()
+    assert abs(world.error_usteps) < 10
+    world.mode(Mode.TRACK)
+    turn(world, DRUM_MILLIRPM)
+    world.run_until(lambda: world.truth.carriage_um > 75_000, step_s=0.01)
+    assert abs(world.truth.coupling_slip_um) < 100
+    world.run(1.5)
+    # 80 mm/s, taken up at 400 mm/s2 where the reversal asks for 1280.
+    lost_um = 1000 * 80**2 / 2 * (1 / 400 - 1 / 1280)
+    assert world.truth.coupling_slip_um == pytest.approx(-lost_um, rel=0.05)
+    world.run_until(lambda: "los" in world.flags, step_s=0.1)
+    assert world.truth.pole_slips == 0
+
+
+@pytest.mark.parametrize("sigma_mm", [0, 0.1])
+def test_a_switch_with_scatter_shows_in_repeated_indexings(sigma_mm: float):
+    world = wrong(switch_plus_scatter_mm=sigma_mm)
+    spans = []
+    for _ in range(12):
+        world.command(Command.INDEX)
+        spans.append(world.value("span_error_um"))
+    deviation = statistics.pstdev(spans)
+    assert deviation == pytest.approx(1000 * sigma_mm, rel=0.7, abs=15)
+
+
+def test_a_switch_that_drifts_shows_in_repeated_indexings():
+    world = wrong(switch_minus_drift_mm=0.05)
+    spans = []
+    for _ in range(6):
+        world.command(Command.INDEX)
+        spans.append(world.value("span_error_um"))
+    steps = [second - first for first, second in itertools.pairwise(spans)]
+    assert all(abs(step) == pytest.approx(50, abs=25) for step in steps)
+    assert len({step > 0 for step in steps}) == 1
+    assert world.truth.limit_um[1] == pytest.approx(-78_400 - 5 * 50, abs=1)  # it is pressed
+
+
+def test_noise_on_the_line_is_counted():
+    world = wrong(line_errors_ppm=20_000)
+    frame = sealed(bytes([1, 4, 0, 100, 0, 8]))
+    answered = sum(len(world.line(frame, 0.05)) == 21 for _ in range(300))
+    assert 200 < answered < 290  # 8 bytes there: 15 % of the requests are lost
+    assert world.value("crc_errors") > 20
 
 
 def test_a_weak_motor_slips():

@@ -261,6 +261,187 @@ static void test_a_switch_is_broken_from_the_beginning(void)
 	TEST_ASSERT_FALSE(rig.plant.pins.overtravel[LW_PLANT_PLUS]);
 }
 
+static void test_a_motor_without_torque_above_its_top_speed_slips_there(void)
+{
+	struct rig_motion motion = {0};
+
+	config.top_speed_mm_per_s = 100.0;
+	rig_init(&rig, &config);
+	rig_command(&rig, &motion, 80.0, 500.0, 300 * MS);
+	TEST_ASSERT_EQUAL_UINT64(0, rig_truth(&rig).pole_slips);
+	rig_command(&rig, &motion, 110.0, 500.0, 200 * MS);
+	TEST_ASSERT_GREATER_THAN_UINT64(0, rig_truth(&rig).pole_slips);
+}
+
+static void test_backlash_is_lost_at_each_change_of_direction(void)
+{
+	struct rig_motion motion = {0};
+
+	config.backlash_um = 300.0;
+	rig_init(&rig, &config);
+	rig_command(&rig, &motion, 20.0, 1000.0, S);
+	rig_command(&rig, &motion, 0.0, 1000.0, 500 * MS);
+	TEST_ASSERT_DOUBLE_WITHIN(20.0, 150.0,
+				  10.0 * motion.position_usteps - rig_truth(&rig).carriage_um);
+	rig_command(&rig, &motion, -20.0, 1000.0, S);
+	rig_command(&rig, &motion, 0.0, 1000.0, 500 * MS);
+	TEST_ASSERT_DOUBLE_WITHIN(20.0, -150.0,
+				  10.0 * motion.position_usteps - rig_truth(&rig).carriage_um);
+	/* The motor has followed all the same. */
+	TEST_ASSERT_DOUBLE_WITHIN(2.0, 0.0, rig_truth(&rig).lag_usteps);
+}
+
+/** What the coupling has slipped after a ramp to 50 mm/s and a slow one to rest. */
+static double slip_um(double acceleration_mm_per_s2)
+{
+	struct rig_motion motion = {0};
+
+	rig_init(&rig, &config);
+	rig_command(&rig, &motion, 50.0, acceleration_mm_per_s2, 400 * MS);
+	rig_command(&rig, &motion, 0.0, 200.0, 400 * MS);
+	TEST_ASSERT_DOUBLE_WITHIN(10.0,
+				  10.0 * motion.position_usteps - rig_truth(&rig).coupling_slip_um,
+				  rig_truth(&rig).carriage_um);
+	return rig_truth(&rig).coupling_slip_um;
+}
+
+static void test_a_loose_coupling_slips_beyond_its_grip(void)
+{
+	config.coupling_grip_mm_per_s2 = 1500.0;             /* 1000 of them after friction */
+	TEST_ASSERT_DOUBLE_WITHIN(5.0, 0.0, slip_um(900.0)); /* the rotor swings in */
+	/* The screw takes v / 1000 where the motor takes v / 4000: v^2 / 2 of the difference, less
+	 * what the coupling's elasticity takes. */
+	TEST_ASSERT_DOUBLE_WITHIN(150.0, 1e3 * 50.0 * 50.0 / 2.0 * (1 / 1000.0 - 1 / 4000.0),
+				  slip_um(4000.0));
+	config.coupling_grip_mm_per_s2 = 0.0; /* tight */
+	TEST_ASSERT_DOUBLE_WITHIN(0.0, 0.0, slip_um(4000.0));
+}
+
+static void test_a_coupling_slips_at_the_end_stop(void)
+{
+	struct rig_motion motion = {0};
+
+	config.coupling_grip_mm_per_s2 = 600.0;
+	config.start_um = 70000;
+	rig_init(&rig, &config);
+	rig_command(&rig, &motion, -50.0, 4000.0, 300 * MS); /* the screw stays behind */
+	rig_command(&rig, &motion, 50.0, 100.0, 1200 * MS);
+	while (rig_truth(&rig).carriage_um < 89999.0) {
+		rig_command(&rig, &motion, 50.0, 100.0, 10 * MS);
+	}
+	rig_command(&rig, &motion, 50.0, 100.0, 50 * MS);
+	TEST_ASSERT_DOUBLE_WITHIN(1.0, 90000.0, rig_truth(&rig).carriage_um);
+}
+
+/** Press the plus switch by hand so often. @return mean and standard deviation of its place, mm */
+static double places_mm(int count, double *deviation)
+{
+	double sum = 0.0;
+	double squares = 0.0;
+
+	for (int i = 0; i < count; i++) {
+		const double mm = rig_truth(&rig).limit_um[LW_PLANT_PLUS] / 1000.0;
+
+		sum += mm;
+		squares += (mm - 78.4) * (mm - 78.4);
+		TEST_ASSERT_EQUAL_INT(
+			0, lw_plant_inject(&rig.plant, LW_PLANT_FAULT_PLACE_CARRIAGE, 80000));
+		rig_run(&rig, MS);
+		TEST_ASSERT_EQUAL_INT(
+			0, lw_plant_inject(&rig.plant, LW_PLANT_FAULT_PLACE_CARRIAGE, 0));
+		rig_run(&rig, MS);
+	}
+	*deviation = sqrt(squares / count);
+	return sum / count;
+}
+
+static void test_a_switch_with_scatter_triggers_elsewhere_each_time(void)
+{
+	double deviation;
+
+	config.limit_scatter_um[LW_PLANT_PLUS] = 200.0;
+	rig_init(&rig, &config);
+	TEST_ASSERT_DOUBLE_WITHIN(0.03, 78.4, places_mm(400, &deviation));
+	TEST_ASSERT_DOUBLE_WITHIN(0.02, 0.2, deviation);
+	TEST_ASSERT_DOUBLE_WITHIN(0.01, -78400.0, rig_truth(&rig).limit_um[LW_PLANT_MINUS]);
+}
+
+static void test_a_switch_with_drift_goes_outward_with_each_actuation(void)
+{
+	double deviation;
+
+	config.limit_drift_um[LW_PLANT_PLUS] = 10.0;
+	config.limit_drift_um[LW_PLANT_MINUS] = 10.0;
+	rig_init(&rig, &config);
+	(void)places_mm(20, &deviation);
+	TEST_ASSERT_DOUBLE_WITHIN(0.01, 78600.0, rig_truth(&rig).limit_um[LW_PLANT_PLUS]);
+	TEST_ASSERT_DOUBLE_WITHIN(0.01, -78400.0, rig_truth(&rig).limit_um[LW_PLANT_MINUS]);
+}
+
+static void test_the_switch_triggers_where_its_truth_says(void)
+{
+	struct rig_motion motion = {0};
+	double place_um;
+
+	config.limit_scatter_um[LW_PLANT_PLUS] = 250.0;
+	config.limit_shift_um_per_mm_per_s = 0.0;
+	config.start_um = 77500;
+	for (uint64_t seed = 1; seed < 6; seed++) {
+		rig = (struct rig){0};
+		TEST_ASSERT_EQUAL_INT(0, lw_plant_init(&rig.plant, &config, seed));
+		lw_plant_enable(&rig.plant, true);
+		motion = (struct rig_motion){0};
+		place_um = rig_truth(&rig).limit_um[LW_PLANT_PLUS];
+		while (rig.plant.pins.limit[LW_PLANT_PLUS].nc_closed) {
+			rig_command(&rig, &motion, 5.0, 1000.0, MS);
+		}
+		TEST_ASSERT_DOUBLE_WITHIN(8.0, place_um, rig_truth(&rig).carriage_um);
+	}
+}
+
+static void test_scatter_beyond_the_hysteresis_is_refused(void)
+{
+	struct lw_plant_misfit why;
+
+	config.limit_scatter_um[LW_PLANT_MINUS] = 800.0 / 3.0;
+	TEST_ASSERT_EQUAL_INT(-EINVAL, lw_plant_config_check(&config, &why));
+	TEST_ASSERT_EQUAL_STRING("switch_minus_scatter_mm", why.figure);
+}
+
+/** Bytes of 100000 that come through wrong. */
+static size_t disturbed(void)
+{
+	uint8_t bytes[100];
+	size_t told = 0;
+	size_t wrong = 0;
+
+	for (int i = 0; i < 1000; i++) {
+		memset(bytes, 0x55, sizeof(bytes));
+		told += lw_plant_disturb(&rig.plant, bytes, sizeof(bytes));
+		for (size_t at = 0; at < sizeof(bytes); at++) {
+			wrong += bytes[at] != 0x55;
+		}
+	}
+	TEST_ASSERT_EQUAL_UINT(told, wrong);
+	return wrong;
+}
+
+static void test_noise_on_the_line_and_more_while_the_motor_turns(void)
+{
+	struct rig_motion motion = {0};
+
+	rig_init(&rig, &config);
+	TEST_ASSERT_EQUAL_UINT(0, disturbed());
+	config.line_errors_ppm = 1000;
+	config.line_errors_moving_ppm = 20000;
+	rig_init(&rig, &config);
+	TEST_ASSERT_INT_WITHIN(40, 100, disturbed());
+	rig_command(&rig, &motion, 20.0, 1000.0, 200 * MS);
+	TEST_ASSERT_INT_WITHIN(200, 2000, disturbed());
+	rig_command(&rig, &motion, 0.0, 1000.0, 200 * MS);
+	TEST_ASSERT_INT_WITHIN(40, 100, disturbed());
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -276,5 +457,14 @@ int main(void)
 	RUN_TEST(test_swapped_switches_tell_of_each_other);
 	RUN_TEST(test_contacts_exchanged_read_actuated_at_rest);
 	RUN_TEST(test_a_switch_is_broken_from_the_beginning);
+	RUN_TEST(test_a_motor_without_torque_above_its_top_speed_slips_there);
+	RUN_TEST(test_backlash_is_lost_at_each_change_of_direction);
+	RUN_TEST(test_a_loose_coupling_slips_beyond_its_grip);
+	RUN_TEST(test_a_coupling_slips_at_the_end_stop);
+	RUN_TEST(test_a_switch_with_scatter_triggers_elsewhere_each_time);
+	RUN_TEST(test_a_switch_with_drift_goes_outward_with_each_actuation);
+	RUN_TEST(test_the_switch_triggers_where_its_truth_says);
+	RUN_TEST(test_scatter_beyond_the_hysteresis_is_refused);
+	RUN_TEST(test_noise_on_the_line_and_more_while_the_motor_turns);
 	return UNITY_END();
 }

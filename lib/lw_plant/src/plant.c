@@ -11,6 +11,8 @@
 #define UM_PER_MM           1000.0
 #define DURATION_MAX_US     1000000u
 #define ENCODER_PULSES_MAX  100000u
+#define PPM_MAX             1000000u
+#define MOVING_UM_PER_S     1000.0
 #define RANDOM_SEED_OF_ZERO 0x9e3779b97f4a7c15u
 
 void lw_plant_config_default(struct lw_plant_config *config)
@@ -48,6 +50,14 @@ static bool at_least_0(double value)
 static bool positive(double value)
 {
 	return isfinite(value) && value > 0.0;
+}
+
+/** A switch that has just released does not trigger at once. */
+static bool scatter_fits(const struct lw_plant_config *config, enum lw_plant_side side)
+{
+	return config->limit_scatter_um[side] == 0.0 ||
+	       (at_least_0(config->limit_scatter_um[side]) &&
+		3.0 * config->limit_scatter_um[side] < config->switch_hysteresis_um);
 }
 
 int lw_plant_config_check(const struct lw_plant_config *config, struct lw_plant_misfit *why)
@@ -92,6 +102,20 @@ int lw_plant_config_check(const struct lw_plant_config *config, struct lw_plant_
 		{config->switch_hysteresis_um >= 0, {"switch_hysteresis_mm", "at least", "0"}},
 		{at_least_0(config->limit_shift_um_per_mm_per_s),
 		 {"switch_late_ms", "at least", "0"}},
+		{at_least_0(config->backlash_um), {"backlash_mm", "at least", "0"}},
+		{at_least_0(config->coupling_grip_mm_per_s2),
+		 {"coupling_grip_mm_per_s2", "at least", "0"}},
+		{scatter_fits(config, LW_PLANT_PLUS),
+		 {"switch_plus_scatter_mm", "less than a third of", "switch_hysteresis_mm"}},
+		{scatter_fits(config, LW_PLANT_MINUS),
+		 {"switch_minus_scatter_mm", "less than a third of", "switch_hysteresis_mm"}},
+		{isfinite(config->limit_drift_um[LW_PLANT_PLUS]),
+		 {"switch_plus_drift_mm", "a number", ""}},
+		{isfinite(config->limit_drift_um[LW_PLANT_MINUS]),
+		 {"switch_minus_drift_mm", "a number", ""}},
+		{config->line_errors_ppm <= PPM_MAX, {"line_errors_ppm", "at most", "1000000"}},
+		{config->line_errors_moving_ppm <= PPM_MAX,
+		 {"line_errors_moving_ppm", "at most", "1000000"}},
 		{config->contact_transit_us <= DURATION_MAX_US,
 		 {"contact_travel_ms", "at most", "1000"}},
 		{config->bounce_duration_us <= DURATION_MAX_US, {"bounce_ms", "at most", "1000"}},
@@ -117,6 +141,9 @@ int lw_plant_init(struct lw_plant *plant, const struct lw_plant_config *config, 
 	}
 	*plant = (struct lw_plant){
 		.random = seed != 0 ? seed : RANDOM_SEED_OF_ZERO,
+		.line_random = ~seed != 0 ? ~seed : RANDOM_SEED_OF_ZERO,
+		.line_errors_ppm = config->line_errors_ppm,
+		.line_errors_moving_ppm = config->line_errors_moving_ppm,
 		.bounce_interval_ns = config->bounce_interval_us * NS_PER_US,
 		.trigger.fire_ns = LW_PLANT_NEVER_NS,
 		.limit_swapped = config->limit_swapped,
@@ -126,13 +153,15 @@ int lw_plant_init(struct lw_plant *plant, const struct lw_plant_config *config, 
 	lw_plant_carriage_init(&plant->carriage, config);
 
 	double usteps_per_um = plant->carriage.usteps_per_um;
+	double hysteresis_usteps = config->switch_hysteresis_um * usteps_per_um;
 
-	plant->hysteresis_usteps = config->switch_hysteresis_um * usteps_per_um;
 	for (int side = 0; side < LW_PLANT_SIDES; side++) {
 		int8_t outward = side == LW_PLANT_PLUS ? 1 : -1;
 
 		plant->limit[side] = (struct lw_plant_switch){
-			.trigger_usteps = outward * config->limit_um[side] * usteps_per_um,
+			.place_usteps = outward * config->limit_um[side] * usteps_per_um,
+			.scatter_usteps = config->limit_scatter_um[side] * usteps_per_um,
+			.drift_usteps = config->limit_drift_um[side] * usteps_per_um,
 			/* um per mm/s is ms: a constant delay, seen from a constant speed. */
 			.shift_s = config->limit_shift_um_per_mm_per_s / UM_PER_MM,
 			.transit_ns = config->contact_transit_us * NS_PER_US,
@@ -142,12 +171,16 @@ int lw_plant_init(struct lw_plant *plant, const struct lw_plant_config *config, 
 			.contacts_swapped = config->limit_contacts_swapped[side],
 		};
 		plant->overtravel[side] = (struct lw_plant_switch){
-			.trigger_usteps = config->overtravel_um * usteps_per_um,
+			.place_usteps = config->overtravel_um * usteps_per_um,
 			.fault = config->overtravel_fault[side],
 			.outward = outward,
 		};
-		lw_plant_switch_init(&plant->limit[side], plant->carriage.position_usteps);
-		lw_plant_switch_init(&plant->overtravel[side], plant->carriage.position_usteps);
+		plant->limit[side].release_usteps =
+			plant->limit[side].place_usteps - hysteresis_usteps;
+		plant->overtravel[side].release_usteps =
+			plant->overtravel[side].place_usteps - hysteresis_usteps;
+		lw_plant_switch_init(plant, &plant->limit[side], plant->carriage.load_usteps);
+		lw_plant_switch_init(plant, &plant->overtravel[side], plant->carriage.load_usteps);
 	}
 	(void)lw_plant_switch_pins(plant);
 	lw_plant_drum_show(plant);
@@ -264,11 +297,31 @@ uint32_t lw_plant_advance_to(struct lw_plant *plant, uint64_t until_ns)
 	return changed;
 }
 
+size_t lw_plant_disturb(struct lw_plant *plant, uint8_t *bytes, size_t count)
+{
+	const double um_per_s =
+		fabs(plant->carriage.path_usteps_per_s) / plant->carriage.usteps_per_um;
+	const uint32_t ppm = um_per_s >= MOVING_UM_PER_S &&
+					     plant->line_errors_moving_ppm > plant->line_errors_ppm
+				     ? plant->line_errors_moving_ppm
+				     : plant->line_errors_ppm;
+	size_t wrong = 0;
+
+	for (size_t i = 0; ppm != 0 && i < count; i++) {
+		if (lw_plant_chance(&plant->line_random, PPM_MAX) < ppm) {
+			bytes[i] ^= (uint8_t)(1u << lw_plant_chance(&plant->line_random, 8));
+			wrong++;
+		}
+	}
+	return wrong;
+}
+
 void lw_plant_read_truth(const struct lw_plant *plant, struct lw_plant_truth *truth)
 {
 	const struct lw_plant_carriage *carriage = &plant->carriage;
 	double position = lw_plant_carriage_usteps(plant);
-	int64_t pole = lw_plant_carriage_pole(carriage, position);
+	double rotor = lw_plant_rotor_usteps(plant);
+	int64_t pole = lw_plant_carriage_pole(carriage, rotor);
 
 	*truth = (struct lw_plant_truth){
 		.time_ns = plant->now_ns,
@@ -276,13 +329,21 @@ void lw_plant_read_truth(const struct lw_plant *plant, struct lw_plant_truth *tr
 		.drum_milli_rpm = plant->drum.speed_milli_rpm,
 		.carriage_um = position / carriage->usteps_per_um,
 		.carriage_usteps = position,
-		.carriage_um_per_s = carriage->path_usteps_per_s / carriage->usteps_per_um,
+		.carriage_um_per_s = carriage->load_path_usteps_per_s / carriage->usteps_per_um,
 		.commanded_usteps = carriage->commanded_usteps,
-		.lag_usteps = (double)carriage->commanded_usteps - position,
+		.lag_usteps = (double)carriage->commanded_usteps - rotor,
 		.step_pulses = carriage->step_pulses,
 		.slipped_usteps = pole * (int64_t)carriage->period_usteps,
 		.pole_slips = carriage->pole_slips,
 		.in_sync = pole == 0,
+		.coupling_slip_um = carriage->coupling_slip_usteps / carriage->usteps_per_um,
+		.limit_um =
+			{
+				plant->limit[LW_PLANT_PLUS].trigger_usteps /
+					carriage->usteps_per_um,
+				-plant->limit[LW_PLANT_MINUS].trigger_usteps /
+					carriage->usteps_per_um,
+			},
 		.rope_um = lw_plant_rope_um(plant),
 	};
 }

@@ -29,7 +29,10 @@ static inline uint64_t substep_begin_ns(const struct lw_plant *plant)
 	return plant->substep_ns - LW_PLANT_SUBSTEP_NS;
 }
 
-/** Uniformly distributed in [0, range). */
+/** Uniformly distributed in [0, range), of a state that is not 0. */
+uint32_t lw_plant_chance(uint64_t *random, uint32_t range);
+
+/** The same of the plant's own. */
 uint32_t lw_plant_random(struct lw_plant *plant, uint32_t range);
 
 #endif /* LW_PLANT_BASE_H */

@@ -24,6 +24,9 @@
 /** More than any rounding of what is added up in a substep. */
 #define ROUNDING 1e-9
 
+/** And the motor's through the coupling's elasticity. */
+#define COUPLING_TIME_CONSTANT_S 5e-3
+
 void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
 			    const struct lw_plant_config *config)
 {
@@ -39,6 +42,9 @@ void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
 		.commanded_usteps = llround(config->start_um * usteps_per_um),
 		.last_commanded_usteps = llround(config->start_um * usteps_per_um),
 		.position_usteps = config->start_um * usteps_per_um,
+		.load_usteps = config->start_um * usteps_per_um,
+		.backlash_usteps = config->backlash_um * usteps_per_um,
+		.grip_usteps_per_s2 = config->coupling_grip_mm_per_s2 * usteps_per_mm,
 		.period_usteps = period,
 		.holding_usteps_per_s2 = holding_acceleration,
 		.half_torque_usteps_per_s = config->half_torque_speed_mm_per_s * usteps_per_mm,
@@ -50,6 +56,7 @@ void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
 		.flange_usteps = config->flange_um * usteps_per_um,
 		.usteps_per_um = usteps_per_um,
 		.reversed = config->carriage_reversed,
+		.loose = config->backlash_um > 0.0 || config->coupling_grip_mm_per_s2 > 0.0,
 	};
 }
 
@@ -123,7 +130,51 @@ static bool friction_holds(const struct lw_plant_carriage *carriage)
 	return most < carriage->friction_usteps_per_s2 * (1.0 - ROUNDING);
 }
 
-void lw_plant_carriage_substep(struct lw_plant_carriage *carriage, uint64_t begin_ns)
+/**
+ * A coupling slips by what the screw's speed lacks to the motor's. It is elastic: single microsteps
+ * do not make it slip. Friction is on the screw's side: it hinders a start and helps a stop.
+ */
+static void slip_coupling(struct lw_plant_carriage *carriage)
+{
+	const double friction = carriage->friction_usteps_per_s2;
+
+	carriage->motor_usteps_per_s +=
+		(carriage->path_usteps_per_s - carriage->motor_usteps_per_s) * SUBSTEP_S /
+		COUPLING_TIME_CONSTANT_S;
+
+	const double missing = carriage->motor_usteps_per_s - carriage->screw_usteps_per_s;
+	const bool faster = missing * carriage->screw_usteps_per_s >= 0.0;
+	const double grip = carriage->grip_usteps_per_s2 + (faster ? -friction : friction);
+
+	carriage->screw_usteps_per_s +=
+		copysign(fmin(fabs(missing), fmax(grip, 0.0) * SUBSTEP_S), missing);
+	carriage->coupling_slip_usteps +=
+		(carriage->motor_usteps_per_s - carriage->screw_usteps_per_s) * SUBSTEP_S;
+}
+
+/** Plan where the carriage goes while the rotor goes its way. */
+static void follow_rotor(struct lw_plant_carriage *carriage)
+{
+	if (!carriage->loose) {
+		carriage->load_usteps = carriage->position_usteps;
+		carriage->load_path_usteps_per_s = carriage->path_usteps_per_s;
+		return;
+	}
+	if (carriage->grip_usteps_per_s2 > 0.0) {
+		slip_coupling(carriage);
+	}
+
+	const double slack = carriage->backlash_usteps / 2.0;
+	const double screw = carriage->position_usteps + carriage->path_usteps_per_s * SUBSTEP_S -
+			     carriage->coupling_slip_usteps;
+	const double pushed = fmin(fmax(carriage->load_usteps, screw - slack), screw + slack);
+	const double end = fmin(fmax(pushed, -carriage->flange_usteps), carriage->flange_usteps);
+
+	carriage->coupling_slip_usteps += pushed - end; /* the end stop holds the screw, too */
+	carriage->load_path_usteps_per_s = (end - carriage->load_usteps) / SUBSTEP_S;
+}
+
+static void move_rotor(struct lw_plant_carriage *carriage, uint64_t begin_ns)
 {
 	double steps = (double)(carriage->commanded_usteps - carriage->last_commanded_usteps);
 
@@ -170,18 +221,52 @@ void lw_plant_carriage_substep(struct lw_plant_carriage *carriage, uint64_t begi
 	}
 }
 
-double lw_plant_carriage_usteps(const struct lw_plant *plant)
+void lw_plant_carriage_substep(struct lw_plant_carriage *carriage, uint64_t begin_ns)
 {
-	double elapsed_s = (double)(plant->now_ns - substep_begin_ns(plant)) * S_PER_NS;
-
-	return plant->carriage.position_usteps + plant->carriage.path_usteps_per_s * elapsed_s;
+	carriage->load_usteps += carriage->load_path_usteps_per_s * SUBSTEP_S;
+	move_rotor(carriage, begin_ns);
+	follow_rotor(carriage);
 }
 
-void lw_plant_carriage_halt(struct lw_plant *plant, double position_usteps)
+static double elapsed_s(const struct lw_plant *plant)
 {
-	plant->carriage.position_usteps = position_usteps;
-	plant->carriage.speed_usteps_per_s = 0.0;
-	plant->carriage.path_usteps_per_s = 0.0;
+	return (double)(plant->now_ns - substep_begin_ns(plant)) * S_PER_NS;
+}
+
+double lw_plant_carriage_usteps(const struct lw_plant *plant)
+{
+	return plant->carriage.load_usteps +
+	       plant->carriage.load_path_usteps_per_s * elapsed_s(plant);
+}
+
+double lw_plant_rotor_usteps(const struct lw_plant *plant)
+{
+	return plant->carriage.position_usteps +
+	       plant->carriage.path_usteps_per_s * elapsed_s(plant);
+}
+
+void lw_plant_carriage_halt(struct lw_plant *plant)
+{
+	struct lw_plant_carriage *carriage = &plant->carriage;
+
+	carriage->load_usteps = lw_plant_carriage_usteps(plant);
+	carriage->load_path_usteps_per_s = 0.0;
+	carriage->position_usteps = lw_plant_rotor_usteps(plant);
+	carriage->speed_usteps_per_s = 0.0;
+	carriage->path_usteps_per_s = 0.0;
+	carriage->motor_usteps_per_s = 0.0;
+	carriage->screw_usteps_per_s = 0.0;
+}
+
+void lw_plant_carriage_place(struct lw_plant *plant, double position_usteps)
+{
+	lw_plant_carriage_halt(plant);
+	/* By hand the carriage turns the screw, and that the motor. */
+	plant->carriage.position_usteps += position_usteps - plant->carriage.load_usteps;
+	plant->carriage.load_usteps = position_usteps;
+	if (!plant->carriage.loose) {
+		plant->carriage.position_usteps = position_usteps;
+	}
 }
 
 void lw_plant_enable(struct lw_plant *plant, bool enabled)
@@ -192,7 +277,7 @@ void lw_plant_enable(struct lw_plant *plant, bool enabled)
 void lw_plant_reference(struct lw_plant *plant)
 {
 	struct lw_plant_carriage *carriage = &plant->carriage;
-	int64_t pole = lw_plant_carriage_pole(carriage, lw_plant_carriage_usteps(plant));
+	int64_t pole = lw_plant_carriage_pole(carriage, lw_plant_rotor_usteps(plant));
 	int64_t slipped = pole * (int64_t)carriage->period_usteps;
 
 	carriage->commanded_usteps -= slipped;

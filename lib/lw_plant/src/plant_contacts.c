@@ -10,7 +10,7 @@
 static void plan_trigger(struct lw_plant *plant, double begin_usteps, double remaining_s)
 {
 	struct lw_plant_trigger *trigger = &plant->trigger;
-	double speed = plant->carriage.path_usteps_per_s;
+	double speed = plant->carriage.load_path_usteps_per_s;
 	/* The next substep begins where this one ends, so each position lies in exactly one. */
 	double end_usteps = begin_usteps + speed * remaining_s;
 	double at_usteps = trigger->position_usteps;
@@ -41,9 +41,7 @@ void lw_plant_plan_contacts(struct lw_plant *plant)
 static bool clear_of(struct lw_plant *plant, const struct lw_plant_switch *contact)
 {
 	const int towards = contact->actuated ? -contact->outward : contact->outward;
-	const double point =
-		contact->outward *
-		(contact->trigger_usteps - (contact->actuated ? plant->hysteresis_usteps : 0.0));
+	const double point = contact->outward * lw_plant_switch_point_usteps(contact);
 
 	if (contact->pole_ns != LW_PLANT_NEVER_NS) {
 		return false;
@@ -83,9 +81,9 @@ bool lw_plant_is_clear(const struct lw_plant *plant)
 {
 	/* A little more than the way, so that no rounding decides. */
 	const double reach_usteps =
-		fabs(plant->carriage.path_usteps_per_s) * (2.0 * SUBSTEP_S + plant->clear_s) + 1.0;
+		fabs(plant->carriage.load_path_usteps_per_s) * (2.0 * SUBSTEP_S + plant->clear_s) +
+		1.0;
 
-	return plant->carriage.position_usteps + reach_usteps <
-		       plant->clear_usteps[LW_PLANT_PLUS] &&
-	       plant->carriage.position_usteps - reach_usteps > plant->clear_usteps[LW_PLANT_MINUS];
+	return plant->carriage.load_usteps + reach_usteps < plant->clear_usteps[LW_PLANT_PLUS] &&
+	       plant->carriage.load_usteps - reach_usteps > plant->clear_usteps[LW_PLANT_MINUS];
 }

@@ -59,6 +59,18 @@ static const char *const channel_words[] = {"none", "stuck_low", "stuck_high", "
 	X("contact_travel_ms", contact_transit_us, KIND_U32, PER_THOUSAND, 0, 1000, NULL)          \
 	X("bounce_ms", bounce_duration_us, KIND_U32, PER_THOUSAND, 0, 1000, NULL)                  \
 	X("bounce_interval_ms", bounce_interval_us, KIND_U32, PER_THOUSAND, 0.001, 1000, NULL)     \
+	X("backlash_mm", backlash_um, KIND_DOUBLE, PER_THOUSAND, 0, 100, NULL)                     \
+	X("coupling_grip_mm_per_s2", coupling_grip_mm_per_s2, KIND_DOUBLE, 1, 0, 1000000, NULL)    \
+	X("switch_plus_scatter_mm", limit_scatter_um[LW_PLANT_PLUS], KIND_DOUBLE, PER_THOUSAND, 0, \
+	  10, NULL)                                                                                \
+	X("switch_minus_scatter_mm", limit_scatter_um[LW_PLANT_MINUS], KIND_DOUBLE, PER_THOUSAND,  \
+	  0, 10, NULL)                                                                             \
+	X("switch_plus_drift_mm", limit_drift_um[LW_PLANT_PLUS], KIND_DOUBLE, PER_THOUSAND, -10,   \
+	  10, NULL)                                                                                \
+	X("switch_minus_drift_mm", limit_drift_um[LW_PLANT_MINUS], KIND_DOUBLE, PER_THOUSAND, -10, \
+	  10, NULL)                                                                                \
+	X("line_errors_ppm", line_errors_ppm, KIND_U32, 1, 0, 1000000, NULL)                       \
+	X("line_errors_moving_ppm", line_errors_moving_ppm, KIND_U32, 1, 0, 1000000, NULL)         \
 	X("motor_reversed", carriage_reversed, KIND_BOOL, 1, 0, 1, no_or_yes)                      \
 	X("encoder_channels_swapped", encoder_swapped, KIND_BOOL, 1, 0, 1, no_or_yes)              \
 	X("encoder_a_inverted", encoder_inverted[0], KIND_BOOL, 1, 0, 1, no_or_yes)                \

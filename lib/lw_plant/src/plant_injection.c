@@ -69,7 +69,7 @@ static void stall(struct lw_plant *plant, int32_t duration_ms)
 	plant->carriage.stall_end_ns = duration_ms < 0
 					       ? LW_PLANT_NEVER_NS
 					       : plant->now_ns + (uint64_t)duration_ms * NS_PER_MS;
-	lw_plant_carriage_halt(plant, lw_plant_carriage_usteps(plant));
+	lw_plant_carriage_halt(plant);
 }
 
 static void slip(struct lw_plant *plant, int32_t usteps)
@@ -79,9 +79,10 @@ static void slip(struct lw_plant *plant, int32_t usteps)
 	double position = lw_plant_carriage_usteps(plant) + rounded;
 
 	if (fabs(position) > carriage->flange_usteps) {
-		lw_plant_carriage_halt(plant, copysign(carriage->flange_usteps, position));
+		lw_plant_carriage_place(plant, copysign(carriage->flange_usteps, position));
 	} else {
 		carriage->position_usteps += rounded;
+		carriage->load_usteps += rounded;
 	}
 }
 
@@ -166,7 +167,7 @@ int lw_plant_inject(struct lw_plant *plant, enum lw_plant_fault fault, int32_t a
 		extra_pulses(plant, argument);
 		break;
 	case LW_PLANT_FAULT_PLACE_CARRIAGE:
-		lw_plant_carriage_halt(plant, argument * plant->carriage.usteps_per_um);
+		lw_plant_carriage_place(plant, argument * plant->carriage.usteps_per_um);
 		break;
 	case LW_PLANT_FAULT_CARRIAGE_REVERSED:
 		plant->carriage.reversed = argument != 0;

@@ -34,13 +34,23 @@ void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
 void lw_plant_carriage_substep(struct lw_plant_carriage *carriage, uint64_t begin_ns);
 /** Where the carriage is now. */
 double lw_plant_carriage_usteps(const struct lw_plant *plant);
+/** Where the rotor is now: the same, but for backlash and a loose coupling. */
+double lw_plant_rotor_usteps(const struct lw_plant *plant);
 /** Whole electrical periods by which the rotor at a position is behind its field. */
 int64_t lw_plant_carriage_pole(const struct lw_plant_carriage *carriage, double position_usteps);
-/** Hold the carriage at a position for the rest of the substep, at rest. */
-void lw_plant_carriage_halt(struct lw_plant *plant, double position_usteps);
+/** Hold the carriage where it is for the rest of the substep, at rest. */
+void lw_plant_carriage_halt(struct lw_plant *plant);
+/** Put the carriage somewhere else, at rest. */
+void lw_plant_carriage_place(struct lw_plant *plant, double position_usteps);
 
 /** Put a switch to rest as a carriage at position_usteps leaves it. */
-void lw_plant_switch_init(struct lw_plant_switch *contact, double position_usteps);
+void lw_plant_switch_init(struct lw_plant *plant, struct lw_plant_switch *contact,
+			  double position_usteps);
+/** Where the pole changes over next, outward. */
+static inline double lw_plant_switch_point_usteps(const struct lw_plant_switch *contact)
+{
+	return contact->actuated ? contact->release_usteps : contact->trigger_usteps;
+}
 /** Plan when the pole moves, for a carriage motion over remaining_s from now on. */
 void lw_plant_switch_plan(struct lw_plant_switch *contact, const struct lw_plant *plant,
 			  double position_usteps, double remaining_s);

@@ -3,10 +3,38 @@
  * @file
  * @brief Switches: where the pole moves, and how its contacts open, travel, close and bounce.
  */
+#include <math.h>
+
 #include "plant_internal.h"
 
-void lw_plant_switch_init(struct lw_plant_switch *contact, double position_usteps)
+#define SCATTER_MOST 3.0 /* standard deviations */
+
+/** Normally distributed with a standard deviation of 1, by the central limit theorem. */
+static double random_normal(struct lw_plant *plant)
 {
+	double sum = -6.0;
+
+	for (int i = 0; i < 12; i++) {
+		sum += lw_plant_random(plant, UINT32_MAX) / (double)UINT32_MAX;
+	}
+	return sum;
+}
+
+/** Choose where the switch triggers next. */
+static void scatter(struct lw_plant *plant, struct lw_plant_switch *contact)
+{
+	contact->trigger_usteps = contact->place_usteps;
+	if (contact->scatter_usteps > 0.0) {
+		contact->trigger_usteps +=
+			contact->scatter_usteps *
+			fmin(fmax(random_normal(plant), -SCATTER_MOST), SCATTER_MOST);
+	}
+}
+
+void lw_plant_switch_init(struct lw_plant *plant, struct lw_plant_switch *contact,
+			  double position_usteps)
+{
+	scatter(plant, contact);
 	contact->actuated = contact->fault == LW_PLANT_SWITCH_STUCK_ACTUATED ||
 			    (contact->fault != LW_PLANT_SWITCH_STUCK_RELEASED &&
 			     contact->outward * position_usteps >= contact->trigger_usteps);
@@ -28,11 +56,10 @@ void lw_plant_switch_plan(struct lw_plant_switch *contact, const struct lw_plant
 	}
 
 	/* Distance and speed towards the point where the pole would change over. */
-	double point =
-		contact->trigger_usteps - (contact->actuated ? plant->hysteresis_usteps : 0.0);
+	double point = lw_plant_switch_point_usteps(contact);
 	int towards = contact->actuated ? -contact->outward : contact->outward;
 	double distance = towards * (contact->outward * point - position_usteps);
-	double speed = towards * plant->carriage.path_usteps_per_s;
+	double speed = towards * plant->carriage.load_path_usteps_per_s;
 
 	if (speed > 0.0) {
 		distance += speed * contact->shift_s;
@@ -61,6 +88,12 @@ void lw_plant_switch_run(struct lw_plant *plant, struct lw_plant_switch *contact
 	if (contact->pole_ns <= plant->now_ns) {
 		contact->pole_ns = LW_PLANT_NEVER_NS;
 		contact->actuated = !contact->actuated;
+		if (!contact->actuated) {
+			/* The release itself is where the switch was when it was actuated. */
+			contact->place_usteps += contact->drift_usteps;
+			contact->release_usteps += contact->drift_usteps;
+			scatter(plant, contact);
+		}
 		contact->closed = false;
 		contact->contact_ns = plant->now_ns + contact->transit_ns;
 		contact->bounce_end_ns = contact->contact_ns + contact->bounce_ns;

@@ -120,6 +120,20 @@ struct lw_plant_config {
 	/** Mean time between two changes of a bouncing contact. */
 	uint32_t bounce_interval_us;
 
+	/** Way that the screw goes before it takes the carriage along after a change of direction.
+	 */
+	double backlash_um;
+	/** Largest acceleration, friction included, that the coupling between motor and screw
+	 * holds; beyond it slips. 0: it never does. */
+	double coupling_grip_mm_per_s2;
+	/** Standard deviation of the place at which a limit switch triggers, from time to time. */
+	double limit_scatter_um[LW_PLANT_SIDES];
+	/** How far outward each actuation moves that place. */
+	double limit_drift_um[LW_PLANT_SIDES];
+	/** Of a million bytes on the line so many are disturbed; and while the carriage moves. */
+	uint32_t line_errors_ppm;
+	uint32_t line_errors_moving_ppm;
+
 	/** The motor turns the wrong way. */
 	bool carriage_reversed;
 	/** Each encoder channel is wired to the other's pin. */
@@ -271,6 +285,10 @@ struct lw_plant_truth {
 	uint64_t pole_slips;
 	/** The lag is less than half an electrical period. */
 	bool in_sync;
+	/** How far the coupling has slipped: the screw is behind the motor by so much. */
+	double coupling_slip_um;
+	/** Where the limit switches trigger next, at zero speed. */
+	double limit_um[LW_PLANT_SIDES];
 	/** Rope that lies on the drum, which was bare at the beginning: lw_plant_set_rope(). */
 	double rope_um;
 };
@@ -281,7 +299,11 @@ struct lw_plant_switch {
 	uint64_t contact_ns;
 	uint64_t bounce_end_ns;
 	uint64_t blip_end_ns;
-	double trigger_usteps;
+	double trigger_usteps; /* where it actuates next, and where it then releases, outward */
+	double release_usteps;
+	double place_usteps; /* what trigger_usteps scatters about */
+	double scatter_usteps;
+	double drift_usteps;
 	double shift_s;
 	uint32_t transit_ns;
 	uint32_t bounce_ns;
@@ -338,9 +360,16 @@ struct lw_plant_carriage {
 	int64_t pole;
 	uint64_t pole_slips;
 	uint64_t step_pulses;
-	double position_usteps;
+	double position_usteps; /* of the rotor */
 	double speed_usteps_per_s;
 	double path_usteps_per_s;
+	double load_usteps; /* of the carriage: the same, but for backlash and a loose coupling */
+	double load_path_usteps_per_s;
+	double backlash_usteps;
+	double grip_usteps_per_s2;
+	double motor_usteps_per_s; /* speeds at both ends of the coupling, smoothed */
+	double screw_usteps_per_s;
+	double coupling_slip_usteps;
 	double field_usteps_per_s;
 	double side_load_usteps_per_s2;
 	double period_usteps;
@@ -354,6 +383,7 @@ struct lw_plant_carriage {
 	bool enabled;
 	bool alarm;
 	bool reversed;
+	bool loose;
 };
 
 /** Private: the armed trigger. */
@@ -379,8 +409,10 @@ struct lw_plant {
 	double clear_usteps[LW_PLANT_SIDES]; /* between these no switch and no trigger is met */
 	double clear_s;                      /* a switch that is late is met so much earlier */
 	uint64_t random;
+	uint64_t line_random; /* its own: how much is said on the line changes nothing else */
+	uint32_t line_errors_ppm;
+	uint32_t line_errors_moving_ppm;
 	uint32_t bounce_interval_ns;
-	double hysteresis_usteps;
 	struct lw_plant_drum drum;
 	struct lw_plant_rope rope;
 	bool trim_pressed[2];
@@ -654,6 +686,13 @@ int lw_plant_arm(struct lw_plant *plant, int32_t position_um, int direction,
 
 /** @brief Whether a trigger is armed that has not fired. */
 bool lw_plant_armed(const struct lw_plant *plant);
+
+/**
+ * @brief Disturb what goes over the line, as the machine does: a bit here and there.
+ *
+ * @return bytes that are wrong now
+ */
+size_t lw_plant_disturb(struct lw_plant *plant, uint8_t *bytes, size_t count);
 
 /** @brief Read what is really the case at plant->now_ns. */
 void lw_plant_read_truth(const struct lw_plant *plant, struct lw_plant_truth *truth);

@@ -39,15 +39,18 @@ def sim(
         typer.Option(help="Serve Modbus TCP there, and no port.", metavar="ADDRESS:PORT"),
     ] = None,
     machine_file: MachineFile = None,
+    as_parameters: Annotated[
+        bool,
+        typer.Option("--as-parameters", help="Simulate the machine that the stored set describes."),
+    ] = False,
 ) -> None:
     """Run the simulator until Ctrl-C: a Modbus slave and a plant. Prints `ready PATH`."""
     path = None if tcp else port
     winch = machine.read(machine_file) if machine_file else None
-    simulator.become(
-        simulator.arguments(
-            path, speed, seed, storage, trace, unit, frame_silence_ms, tcp, machine=winch
-        )
+    line = simulator.arguments(
+        path, speed, seed, storage, trace, unit, frame_silence_ms, tcp, winch, as_parameters
     )
+    simulator.become(line)
 
 
 @with_device

@@ -164,6 +164,8 @@ def library() -> ctypes.CDLL:
     )
     loaded.lw_native_machine_default.argtypes = (ctypes.c_char_p,)
     loaded.lw_native_machine_default.restype = ctypes.c_double
+    loaded.lw_native_machine_of_params.argtypes = (ctypes.POINTER(I32), ctypes.c_char_p)
+    loaded.lw_native_machine_of_params.restype = ctypes.c_double
     loaded.lw_native_machine_check.argtypes = (
         ctypes.POINTER(ctypes.c_char_p),
         ctypes.POINTER(ctypes.c_double),
@@ -295,6 +297,16 @@ def machine_figures() -> Mapping[str, Figure]:
             library().lw_native_machine_default(entry.name),
         )
     return figures
+
+
+def machine_of(parameters: Mapping[str, int]) -> dict[str, float]:
+    """The figures of the machine that a whole parameter set describes."""
+    ordered = [parameters[point.name] for point in PARAMETERS]
+    values = (I32 * len(ordered))(*ordered)
+    return {
+        name: library().lw_native_machine_of_params(values, name.encode())
+        for name in machine_figures()
+    }
 
 
 class MisfitError(ToolError):

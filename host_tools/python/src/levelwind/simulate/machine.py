@@ -155,6 +155,12 @@ def make(given: Mapping[str, float]) -> Machine:
     return Machine(MappingProxyType(figures), MappingProxyType(dict(given)))
 
 
+def describing(parameters: Mapping[str, int]) -> Machine:
+    """The machine on which a whole parameter set is right; RefusedError if that set never is."""
+    native.derive(parameters)
+    return make(native.machine_of(parameters))
+
+
 def read(path: Path) -> Machine:
     """The machine in a file; ToolError names file, line, figure, value and limit."""
     document = yaml_file.load(path)

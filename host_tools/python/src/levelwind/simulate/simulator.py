@@ -25,6 +25,7 @@ def arguments(
     frame_silence_ms: int | None = None,
     tcp: str | None = None,
     machine: Machine | None = None,
+    as_parameters: bool = False,
 ) -> list[str]:
     """The command line of lw_sim: at a port, or at ADDRESS:PORT for Modbus TCP."""
     given = {
@@ -41,6 +42,8 @@ def arguments(
     for name, value in given.items():
         if value is not None:
             line += [f"--{name}", str(value)]
+    if as_parameters:
+        line.append("--as-parameters")
     return line + (machine.arguments() if machine else [])
 
 
