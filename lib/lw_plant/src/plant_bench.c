@@ -2,6 +2,7 @@
 #include "lw/plant_bench.h"
 
 #include <errno.h>
+#include <math.h>
 #include <string.h>
 
 static void refresh(struct lw_plant_bench *bench)
@@ -229,6 +230,27 @@ struct lw_bank_section lw_plant_bench_section(struct lw_plant_bench *bench)
 	};
 }
 
+/** Set-points of what the machine is like from the beginning. */
+static void show_machine(struct lw_plant_bench *bench)
+{
+	const struct lw_plant *plant = bench->plant;
+	struct lw_bench *registers = &bench->registers;
+
+	registers->bench_direction_reversed = plant->carriage.reversed;
+	registers->bench_bounce_ms = (int32_t)(plant->limit[LW_PLANT_PLUS].bounce_ns / 1000000u);
+	registers->bench_switch_late_us =
+		(int32_t)lround(plant->limit[LW_PLANT_PLUS].shift_s * 1e6);
+	registers->bench_switch_plus_fault = plant->limit[LW_PLANT_PLUS].fault;
+	registers->bench_switch_minus_fault = plant->limit[LW_PLANT_MINUS].fault;
+	registers->bench_overtravel_plus =
+		plant->overtravel[LW_PLANT_PLUS].fault == LW_PLANT_SWITCH_STUCK_ACTUATED;
+	registers->bench_overtravel_minus =
+		plant->overtravel[LW_PLANT_MINUS].fault == LW_PLANT_SWITCH_STUCK_ACTUATED;
+	registers->bench_encoder_a_fault = plant->drum.channel_fault[0];
+	registers->bench_encoder_b_fault = plant->drum.channel_fault[1];
+	registers->bench_index_pulses = !plant->drum.index_open;
+}
+
 void lw_plant_bench_init(struct lw_plant_bench *bench, struct lw_plant *plant)
 {
 	/* The profile is large, and nobody reads it beyond its count. */
@@ -247,6 +269,7 @@ void lw_plant_bench_init(struct lw_plant_bench *bench, struct lw_plant *plant)
 			       sizeof(int32_t));
 		}
 	}
+	show_machine(bench);
 	(void)set_rope(bench);
 	/* The plant's own default is another one. */
 	(void)lw_plant_drum_acceleration(

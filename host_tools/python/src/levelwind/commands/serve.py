@@ -14,7 +14,7 @@ from levelwind.errors import ToolError
 from levelwind.line.connection import Json, with_line
 from levelwind.line.port import Line
 from levelwind.show.output import console, print_json, print_table, warn
-from levelwind.simulate import simulator
+from levelwind.simulate import machine, simulator
 
 NO_PACKAGES = "The server needs more packages: pip install 'levelwind[serve]'"
 NO_PTY = {"port": None, "tcp": "127.0.0.1:0"}
@@ -60,6 +60,12 @@ def serve(
         bool, typer.Option("--simulator", help="A simulated winch, launch after launch.")
     ] = False,
     speed: Annotated[str, typer.Option(help="Of the simulator: factor of real time.")] = "1",
+    machine_file: Annotated[
+        Path | None,
+        typer.Option(
+            "--machine", help="Simulate this machine (doc/machine.md).", metavar="FILE.yaml"
+        ),
+    ] = None,
 ) -> None:
     """Own the port: a page for the operator, Modbus TCP for others, a recorder. Until Ctrl-C."""
     try:
@@ -71,11 +77,14 @@ def serve(
         pin.set(typer.prompt("New PIN", hide_input=True, confirmation_prompt=True))
     if allow_commands and not pin.exists():
         raise ToolError(f"--allow-commands: there is no PIN in {pin.path}. Set one: --set-pin.")
+    if machine_file and not simulate:
+        raise ToolError("--machine: a real winch is as it is; give --simulator, too.")
+    winch = machine.read(machine_file) if machine_file else None
     with ExitStack() as stack:
         if simulate:
             folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="levelwind-")))
             at = {"port": str(folder / "port")} if os.name == "posix" else NO_PTY
-            arguments = simulator.arguments(**at, speed=speed)
+            arguments = simulator.arguments(**at, speed=speed, machine=winch)
             line = Line(stack.enter_context(simulator.Simulator(arguments)).port)
         setting = run.Setting(
             line,
@@ -87,6 +96,7 @@ def serve(
             tuple(gateway.networks(write_from or [])),
             frozenset(name or []),
             demonstrate=simulate,
+            parameters=winch.parameters() if winch else None,
         )
         run.run(setting, lambda url: print(f"ready {url}", flush=True), warn)
 

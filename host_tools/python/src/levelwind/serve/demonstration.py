@@ -2,12 +2,13 @@
 """The demonstration for the page: set up, indexed, then a launch now and then, until the end."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from levelwind.errors import ToolError
 from levelwind.files import profiles, script
 from levelwind.line.device import Device
-from levelwind.map_table import Command
+from levelwind.line.motion import INDEX_LIMIT_S
+from levelwind.map_table import Command, Mode
 from levelwind.simulate import launches
 
 PAUSE_S = 5.0
@@ -26,8 +27,14 @@ LOOK_S = 0.1
 class Demonstration:
     """A thread that winds launch after launch on the simulated winch."""
 
-    def __init__(self, device: Callable[[], Device], say: Callable[[str], None]) -> None:
-        self._device, self._say = device, say
+    def __init__(
+        self,
+        device: Callable[[], Device],
+        say: Callable[[str], None],
+        parameters: Mapping[str, int] | None = None,
+    ) -> None:
+        """`parameters`: the whole set, where the machine is not the default one."""
+        self._device, self._say, self._parameters = device, say, parameters
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="demonstration", daemon=True)
 
@@ -48,12 +55,21 @@ class Demonstration:
             pass
         device.write({"bench_drum_speed_millirpm": 0})
 
+    def _set_up(self, device: Device) -> None:
+        if self._parameters is not None:
+            device.write({**self._parameters, **ROPE})
+            device.command(Command.APPLY)
+            device.write({"mode": Mode.TRACK})
+            device.command(Command.INDEX, limit_s=INDEX_LIMIT_S)
+            return
+        device.write(ROPE)  # the set-up applies it with its own
+        for step in script.load(profiles.find("field_setup.yaml")):
+            step.run(device)
+
     def _run(self) -> None:
         try:
             device = self._device()
-            device.write(ROPE)  # the set-up applies it with its own
-            for step in script.load(profiles.find("field_setup.yaml")):
-                step.run(device)
+            self._set_up(device)
             device.write({"set_rope_mm": ALL_ROPE_MM})
             device.command(Command.SET_ROPE)
         except ToolError as error:

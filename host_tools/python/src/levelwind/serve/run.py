@@ -4,7 +4,7 @@
 import asyncio
 import contextlib
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -40,6 +40,8 @@ class Setting:
     write_from: tuple[Network, ...] = ()
     names: frozenset[str] = frozenset()
     demonstrate: bool = False
+    parameters: Mapping[str, int] | None = None
+    """The demonstration's, where its machine is not the default one."""
 
 
 def address(option: str, given: str) -> tuple[str, int]:
@@ -158,7 +160,7 @@ def run(setting: Setting, ready: Callable[[str], None], warn: Callable[[str], No
         watcher.start()
         stack.callback(watcher.close)
         if setting.demonstrate:
-            demonstration = Demonstration(Operator(owner).device, warn)
+            demonstration = Demonstration(Operator(owner).device, warn, setting.parameters)
             stack.callback(demonstration.close)
             demonstration.start()
         with contextlib.suppress(asyncio.CancelledError, KeyboardInterrupt):
