@@ -174,7 +174,6 @@ static void test_a_run_shows_what_the_wires_do(void)
 	static struct rig single;
 
 	config.encoder_swapped = true;
-	config.encoder_inverted[1] = true;
 	rig_init(&rig, &config);
 	rig_init(&single, &config);
 	TEST_ASSERT_EQUAL_INT(0, lw_plant_drum_target(&rig.plant, 9000));
@@ -183,7 +182,7 @@ static void test_a_run_shows_what_the_wires_do(void)
 		if (lw_plant_next_is_run(&rig.plant, UINT64_MAX)) {
 			struct lw_plant_run run = lw_plant_run_begin(&rig.plant, UINT64_MAX);
 
-			TEST_ASSERT_EQUAL_INT(1, lw_plant_run_direction(&rig.plant));
+			TEST_ASSERT_EQUAL_INT(-1, lw_plant_run_direction(&rig.plant));
 			do {
 				(void)lw_plant_run_next(&run);
 			} while (lw_plant_run_goes_on(&run));
@@ -331,6 +330,8 @@ static void test_a_coupling_slips_at_the_end_stop(void)
 	}
 	rig_command(&rig, &motion, 50.0, 100.0, 50 * MS);
 	TEST_ASSERT_DOUBLE_WITHIN(1.0, 90000.0, rig_truth(&rig).carriage_um);
+	TEST_ASSERT_DOUBLE_WITHIN(30.0, 70000.0 + 10.0 * motion.position_usteps - 90000.0,
+				  rig_truth(&rig).coupling_slip_um);
 }
 
 /** Press the plus switch by hand so often. @return mean and standard deviation of its place, mm */
