@@ -234,7 +234,7 @@ static void observed_run(struct lw_world *world, uint64_t until_ns)
 	struct lw_plant_run run = lw_plant_run_begin(plant, until_ns);
 	const uint64_t begin_ns = plant->substep_ns - LW_PLANT_SUBSTEP_NS;
 	const unsigned int order =
-		plant->drum.direction > 0 ? LW_QUADRATURE_ORDER : ~LW_QUADRATURE_ORDER;
+		lw_plant_run_direction(plant) > 0 ? LW_QUADRATURE_ORDER : ~LW_QUADRATURE_ORDER;
 	unsigned int levels =
 		(unsigned int)plant->pins.encoder_a << 1 | (unsigned int)plant->pins.encoder_b;
 	uint32_t step_count = 0;
