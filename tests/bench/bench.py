@@ -1,28 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measure, against the budgets: `./dev bench [--json FILE] [--record]`.
+"""Measure, against the budgets: `./dev bench [--json FILE] [--record] [--against REV]`.
 
-Exit status 1 if one is not met, or if an edge has become dearer than recorded.
+Exit status 1 if one is not met, or if what is counted has become dearer than recorded.
 """
 
 import argparse
 import json
 import os
-import re
-import statistics
 import subprocess
 import sys
+import tarfile
 import tempfile
 import time
-from dataclasses import asdict, dataclass
+from collections.abc import Callable
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
 sys.path.insert(0, str(Path(__file__).parent.parent / "integration"))
 
 import board_bench
+import counted
 import edge_cost
 import readme_numbers
 from budgets import FASTER_THAN_REAL_TIME_MIN, LAY_SEARCH_MAX_S
+from campaign.workers import play_all
+from counted import TOP_EDGES_PER_S
+from figure import FIGURES, Figure, dearer, document, figure, side_by_side, table, without_name
 from latency import ANSWER_MAX_MS, BAUD, REGISTERS, of_target
 from levelwind.core.native import SIMULATOR, find
 from levelwind.lay import search
@@ -33,35 +36,18 @@ from levelwind.map_table import POINTS, Command
 from slave import NATIVE_SIM
 from world import MILLIRPM_PER_EDGE_PER_S, World
 
-TOP_EDGES_PER_S = 48_000  # 40 m/s of rope
 POLLED_S = 10.0
 BEHIND_MAX_MS = 200  # from there on lw_sim gives lost time up
 LATENCY_READS = 2000
 LAY_PATTERNS = 2000
 LAY_ROPE_UM = 5000
-LAW_CASES = ("sweep", "reversal", "direction_change", "cam_linear", "cam_trapezoid")
+LAUNCHES = 200
+PARTS = ("unpaced", "polled", "answers", "counted", "launches", "lay", "board", "arm")
+ROOT = Path(__file__).parents[2]
+ELSEWHERE = "LEVELWIND_BENCH_SOURCES" in os.environ  # another revision is being measured
 
 
-@dataclass
-class Result:
-    """One line of the table."""
-
-    name: str
-    target: str
-    options: str
-    min: float
-    avg: float
-    max: float
-    unit: str
-    before: float | None = None  # what it was, where that is known
-
-
-def result(name: str, target: str, options: str, values: list[float], unit: str) -> Result:
-    """Over the values of one measurement."""
-    return Result(name, target, options, min(values), statistics.fmean(values), max(values), unit)
-
-
-def unpaced() -> list[Result]:
+def unpaced() -> list[Figure]:
     """The whole world in this process, at top speed, as fast as it can."""
     world = World().index()
     world.drum(TOP_EDGES_PER_S)
@@ -73,10 +59,11 @@ def unpaced() -> list[Result]:
         factors.append(20.0 / (time.perf_counter() - began))
     assert "tracking" in world.flags
     options = f"{TOP_EDGES_PER_S} edges/s, one process, 5 x 20 s"
-    return [result("faster than real time", "simulator", options, factors, "x")]
+    limits = {"avg_min": FASTER_THAN_REAL_TIME_MIN}
+    return [figure("faster than real time", "simulator", options, factors, "x", limits=limits)]
 
 
-def polled() -> list[Result]:
+def polled() -> list[Figure]:
     """The simulator program in real time on one core, polled without a pause over a pty."""
     with tempfile.TemporaryDirectory() as folder:
         port = f"{folder}/port"
@@ -94,7 +81,7 @@ def polled() -> list[Result]:
             simulator.wait()
 
 
-def poll(device: Device) -> list[Result]:
+def poll(device: Device) -> list[Figure]:
     """Index, turn the drum, poll, stop the drum, count."""
     device.write({"index_rate_edges_per_s": 50_000})
     device.command(Command.APPLY)
@@ -129,14 +116,20 @@ def poll(device: Device) -> list[Result]:
     assert edges > TOP_EDGES_PER_S * (POLLED_S - 1)
     options = f"{TOP_EDGES_PER_S} edges/s, real time, one core, pymodbus over a pty, {took_s:.0f} s"
     return [
-        Result("edges lost", "lw_sim", f"{options}, {edges} edges", lost, lost, lost, "edges"),
-        result("behind real time at the end", "lw_sim", options, [late_ms], "ms"),
-        result("polls", "lw_sim", options, [len(latencies) / took_s], "1/s"),
-        result("latency of a poll", "lw_sim", options, latencies, "ms"),
+        figure(
+            *("edges lost", "lw_sim", f"{options}, {edges} edges", [lost], "edges"),
+            limits={"max_max": 0},
+        ),
+        figure(
+            *("behind real time at the end", "lw_sim", options, [late_ms], "ms"),
+            limits={"max_max": BEHIND_MAX_MS},
+        ),
+        figure("polls", "lw_sim", options, [len(latencies) / took_s], "1/s"),
+        figure("latency of a poll", "lw_sim", options, latencies, "ms"),
     ]
 
 
-def answers(target: str) -> list[Result]:
+def answers(target: str) -> list[Figure]:
     """A read of 20 registers at the fastest drum, from the end of the request on."""
     with tempfile.TemporaryDirectory() as folder:
         found = of_target(target, Path(folder), LATENCY_READS)
@@ -145,13 +138,16 @@ def answers(target: str) -> list[Result]:
     )
     own = f"{options}, without waiting for a processor"
     return [
-        result("answer, median", target, options, [found.median_ms], "ms"),
-        result("answer, 99.9 %", target, options, [found.slowest_permille_ms], "ms"),
-        result("answer, the slave's time", target, own, found.slave_ms, "ms"),
+        figure("answer, median", target, options, [found.median_ms], "ms"),
+        figure("answer, 99.9 %", target, options, [found.slowest_permille_ms], "ms"),
+        figure(
+            *("answer, the slave's time", target, own, found.slave_ms, "ms"),
+            limits={"max_max": ANSWER_MAX_MS},
+        ),
     ]
 
 
-def lay_search() -> list[Result]:
+def lay_search() -> list[Figure]:
     """`levelwind lay`: so many settings of the factory machine, each laid and judged."""
     parameters = {p.name: p.default or 0 for p in POINTS.values() if p.block == "parameters"}
     pitch_um, dwell_millirev = (10_800, 13_200), (0, 300)
@@ -170,7 +166,24 @@ def lay_search() -> list[Result]:
         f"{tried} patterns, {LAUNCH_M:g} m of {LAY_ROPE_UM / 1000:g} mm, "
         f"{len(os.sched_getaffinity(0))} processors"
     )
-    return [result("lay search, 2000 patterns", "levelwind lay", options, [took_s], "s")]
+    limits = {"max_max": LAY_SEARCH_MAX_S}
+    name = "lay search, 2000 patterns"
+    return [figure(name, "levelwind lay", options, [took_s], "s", limits=limits)]
+
+
+def launches() -> list[Figure]:
+    """Launches of the fault campaign on all cores."""
+    seeds = range(1, 1 + LAUNCHES)
+    began = time.perf_counter()
+    pieces = list(play_all(seeds))
+    rate = LAUNCHES / (time.perf_counter() - began)
+    cores = len(os.sched_getaffinity(0))
+    own = [1000 * piece.seconds / len(piece.launches) for piece in pieces]
+    options = f"{LAUNCHES} launches, {cores} processors"
+    return [
+        figure("launches of the campaign", "campaign", options, [rate], "1/s"),
+        figure("a launch of the campaign, processor", "campaign", options, own, "ms"),
+    ]
 
 
 def wait_for_rest(device: Device) -> None:
@@ -184,37 +197,61 @@ def counters(device: Device) -> dict[str, int]:
     return device.read_names("net_edges", "bench_transitions")
 
 
-def law(case: str) -> Result:
-    """Instructions of the encoder interrupt's path through the core, edge by edge."""
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "callgrind"
-        subprocess.run(
-            [
-                *("valgrind", "--tool=callgrind", f"--callgrind-out-file={out}"),
-                *("--toggle-collect=encoder_interrupt", "--dump-instr=no"),
-                *("--dump-after=encoder_interrupt", "--combine-dumps=yes"),
-                *(find("lw_law_bench"), case),
-            ],
-            check=True,
-            capture_output=True,
-        )
-        counts = [int(n) for n in re.findall(r"^totals: (\d+)", out.read_text(), re.M)]
-    counts = [count for count in counts if count]  # the last part holds what comes after
-    assert len(counts) == 1000, f"{len(counts)} edges counted"
-    options = f"{os.uname().machine}, callgrind, 1000 edges, 4 edges per pulse"
-    return result(f"edge: {case.replace('_', ' ')}", "core", options, counts, "instructions")
-
-
-def arm(record: bool) -> list[str]:
-    """Instructions per edge on Arm, beside the record; what is dearer, or misses its target."""
+def arm(record: bool) -> list[Figure]:
+    """Instructions per edge on Arm, beside the record."""
     if not edge_cost.available():
-        print(f"\nno compiler for Arm: {edge_cost.HOW_TO_INSTALL}")
+        print(f"bench: Arm left out, no compiler: {edge_cost.HOW_TO_INSTALL}", file=sys.stderr)
         return []
     costs, sizes = edge_cost.measure_all(tuple(edge_cost.CPUS))
-    print("\n" + edge_cost.table(costs, sizes))
     if record:
         edge_cost.write_record(costs, sizes)
-    return edge_cost.failures(costs, edge_cost.recorded())
+    return edge_cost.figures(costs, sizes)
+
+
+def measure(record: bool, only: set[str]) -> list[Figure]:
+    """Everything, or some of it."""
+    targets = ["sim", "native_sim"] if NATIVE_SIM.exists() and not ELSEWHERE else ["sim"]
+    if len(targets) < 2 and "answers" in only:
+        print(f"bench: native_sim left out, {NATIVE_SIM} is not built", file=sys.stderr)
+    parts: dict[str, Callable[[], list[Figure]]] = {
+        "unpaced": unpaced,
+        "polled": polled,
+        "answers": lambda: [f for target in targets for f in answers(target)],
+        "counted": counted.measure,
+        "launches": launches,
+        "lay": lay_search,
+        "board": lambda: [] if ELSEWHERE else board_bench.measure(),
+        "arm": lambda: arm(record),
+    }
+    return [f for part, measured in parts.items() if part in only for f in measured()]
+
+
+def of_revision(revision: str, only: set[str]) -> list[dict[str, object]]:
+    """The same measurements of another revision's core, plant and simulator, built beside this."""
+    with tempfile.TemporaryDirectory(prefix="levelwind_") as folder:
+        tree, build, archive = (f"{folder}/{name}" for name in ("tree", "build", "tree.tar"))
+        subprocess.run(["git", "-C", ROOT, "archive", "-o", archive, revision], check=True)
+        with tarfile.open(archive) as packed:
+            packed.extractall(tree)
+        # The programs that are measured are those of today, around that revision's sources.
+        for program in ("law_bench.c", "world_bench.c", "CMakeLists.txt"):
+            Path(tree, "tests/bench", program).write_bytes(
+                (ROOT / "tests/bench" / program).read_bytes()
+            )
+        preset = ("-DCMAKE_BUILD_TYPE=RelWithDebInfo", "-DLW_BUILD_TESTS=OFF", "-DLW_WERROR=OFF")
+        for command in (
+            ["cmake", "-S", tree, "-B", build, "-G", "Ninja", *preset],
+            ["cmake", "--build", build],
+        ):
+            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        results = Path(folder) / "results.json"
+        subprocess.run(
+            [sys.executable, __file__, "--json", str(results), "--only", *sorted(only)],
+            stdout=subprocess.DEVNULL,
+            env={**os.environ, "LEVELWIND_NATIVE_DIR": build, "LEVELWIND_BENCH_SOURCES": tree},
+            check=False,  # what it was may miss today's targets
+        )
+        return json.loads(results.read_text())  # type: ignore[no-any-return]
 
 
 def main() -> int:
@@ -222,52 +259,30 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="./dev bench", description=__doc__)
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the results here, too")
     parser.add_argument("--record", action="store_true", help="compare with these from now on")
+    parser.add_argument("--only", nargs="+", choices=PARTS, default=PARTS, help="not all of it")
+    parser.add_argument(
+        "--against", metavar="REV", help="measure that revision, too, and show both side by side"
+    )
     arguments = parser.parse_args()
 
-    targets = ["sim", "native_sim"] if NATIVE_SIM.exists() else ["sim"]
-    if len(targets) < 2:
-        print(f"bench: native_sim left out, {NATIVE_SIM} is not built", file=sys.stderr)
-    board = board_bench.measure()
-    results = [
-        *unpaced(),
-        *polled(),
-        *(r for target in targets for r in answers(target)),
-        *(law(case) for case in LAW_CASES),
-        *lay_search(),
-        *(
-            Result(r.name, "nucleo_f446re", r.options, r.min, r.avg, r.max, r.unit, r.before)
-            for r in board
-        ),
-    ]
-    width = max(len(r.name) for r in results)
-    print(f"{'':{width}}  {'min':>9} {'avg':>9} {'max':>9}")
-    for r in results:
-        figures = " ".join(f"{value:9.2f}" for value in (r.min, r.avg, r.max))
-        before = "" if r.before is None else f"; {r.before:g} before"
-        print(f"{r.name:{width}}  {figures}  {r.unit:12}  {r.target}: {r.options}{before}")
-    document = json.dumps([asdict(r) for r in results], indent=2) + "\n"
+    only = set(arguments.only)
+    if arguments.record and only != set(PARTS):
+        parser.error("--record wants all of it, not --only some")
+    record = json.loads(FIGURES.read_text()) if FIGURES.exists() else []
+    figures = measure(arguments.record, only)
+    print(table(figures))
+    text = json.dumps(document(figures), indent=2) + "\n"
     if arguments.json:
-        arguments.json.write_text(document)
+        arguments.json.write_text(text)
+    failures = [told for f in figures for told in f.missed()]
+    failures += [f"{name} ({target}): twice" for name, target in without_name(figures)]
     if arguments.record:
-        readme_numbers.FIGURES.write_text(document)
-
-    by_name = {r.name: r for r in results}
-    failures = []
-    if by_name["faster than real time"].avg < FASTER_THAN_REAL_TIME_MIN:
-        failures.append(f"the simulator is less than {FASTER_THAN_REAL_TIME_MIN}x real time")
-    if by_name["edges lost"].max != 0:
-        failures.append("the simulator has lost edges")
-    if by_name["behind real time at the end"].max > BEHIND_MAX_MS:
-        failures.append("the simulator has not kept up with real time")
-    for late in (r for r in results if r.name == "answer, the slave's time"):
-        if late.max > ANSWER_MAX_MS:
-            failures.append(f"{late.target} has answered after more than {ANSWER_MAX_MS:g} ms")
-    if by_name["lay search, 2000 patterns"].max > LAY_SEARCH_MAX_S:
-        failures.append(f"a search of 2,000 patterns took more than {LAY_SEARCH_MAX_S} s")
-    failures += board_bench.failures(board)
-    failures += arm(arguments.record)
-    if arguments.record:
+        FIGURES.write_text(text)
         readme_numbers.write()
+    elif not ELSEWHERE:
+        failures += dearer(figures, record)
+    if arguments.against:
+        print("\n" + side_by_side(figures, of_revision(arguments.against, only), arguments.against))
     for failure in failures:
         print(f"bench: {failure}", file=sys.stderr)
     return 1 if failures else 0

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the Nucleo's image costs on the emulated board, for bench.py."""
 
-from typing import NamedTuple
-
 from board.machine import IRQ0, available
 from board.ready import indexed
+from budgets import EDGE_TO_PULSE_MAX_US, LOAD_MAX_PERCENT
+from figure import Figure
 
 TOP_EDGES_PER_S = 48_000
 POLLS = 50
 SECONDS = 2.0  # some double traverses: the share of the reversals is that of any launch
 ENCODER = IRQ0 + 28
 CYCLES_PERMILLE = (1000, 1300)
-PER_EDGE_MAX, LOAD_MAX_PERCENT, EDGE_TO_PULSE_MAX_US = 90, 10, 5
+PER_EDGE_MAX = 90
 # The image before the timer counted the edges: by GPIO, the first at 96 MHz, the last at 168.
 BEFORE_INTERRUPT = {1000: 238, 1300: 238}
 BEFORE_PER_EDGE = {1000: 425, 1300: 425}
@@ -19,20 +19,7 @@ BEFORE_LOAD_PERCENT = {1000: 33, 1300: 41}
 BEFORE_EDGE_TO_PULSE_US = {1000: 13.2, 1300: None}
 
 
-class Row(NamedTuple):
-    """A line of the table; the name stays what it is, for who reads the JSON."""
-
-    name: str
-    options: str
-    min: float
-    avg: float
-    max: float
-    unit: str
-    before: float | None  # of the first images
-    limit: float | None  # of the average
-
-
-def measure() -> list[Row]:
+def measure() -> list[Figure]:
     """At full speed, polled without a pause."""
     if available():
         return []
@@ -74,16 +61,9 @@ def measure() -> list[Row]:
             ),
             ("processor's load", (load,) * 3, "%", BEFORE_LOAD_PERCENT, LOAD_MAX_PERCENT),
         ):
+            limits = {} if limit is None else {"avg_max": limit}
+            of_image = (unit, before[permille], limits, True)
             rows.append(
-                Row(f"board, {cpi}: {name}", options, *figures, unit, before[permille], limit)
+                Figure(f"board, {cpi}: {name}", "nucleo_f446re", options, *figures, *of_image)
             )
     return rows
-
-
-def failures(rows: list[Row]) -> list[str]:
-    """What misses its target."""
-    return [
-        f"{row.name}: {row.avg:.1f} {row.unit}, at most {row.limit:g}"
-        for row in rows
-        if row.limit is not None and row.avg > row.limit
-    ]

@@ -6,6 +6,7 @@ of runs either way. Every step is compared with the model of tests/property.
 """
 
 import json
+import os
 import random
 import shutil
 import struct
@@ -17,6 +18,7 @@ from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from pathlib import Path
 
+from figure import Figure
 from levelwind.cam.table import Scale, Table
 from levelwind.map_table import CamInterpolation
 from unicorn import UC_ARCH_ARM, UC_HOOK_BLOCK, UC_MODE_MCLASS, UC_MODE_THUMB, Uc
@@ -28,6 +30,8 @@ from rational_cam import STEPS_PER_EDGE_MAX, RationalCam
 from reversing_screw import Model, Pattern
 
 ROOT = Path(__file__).parent.parent.parent
+# Of another revision, where bench.py compares with one.
+SOURCES = Path(os.environ.get("LEVELWIND_BENCH_SOURCES", ROOT))
 HOW_TO_INSTALL = "apt-get install gcc-arm-none-eabi libnewlib-arm-none-eabi"
 RECORD = ROOT / "tests/bench/edge_cost.json"
 COMPILER = "arm-none-eabi-gcc"
@@ -105,7 +109,7 @@ def build(folder: Path, cpu: str, optimization: str) -> Path:
     }
     roots = ("law_forward", "law_backward", "hardware_interrupt", "software_interrupt")
     roots += ("law_offset", "law_size", "setup_cam", "cam_edge", "cam_rows")
-    core = ROOT / "lib/lw_core"
+    core = SOURCES / "lib/lw_core"
     subprocess.run(
         [
             *(COMPILER, "-std=c11", "-mthumb", f"-mcpu={cpu}", optimization, "-nostartfiles"),
@@ -115,7 +119,7 @@ def build(folder: Path, cpu: str, optimization: str) -> Path:
             *(f"-Wl,-Ttext={FLASH:#x}", f"-Wl,-Tdata={RAM:#x}"),
             *(f"-I{core}/include", f"-I{core}/generated", f"{core}/generated/map.c"),
             *sorted(map(str, core.glob("src/*/*.c"))),
-            *(str(ROOT / "tests/bench/edge.c"), "-o", str(program)),
+            *(str(SOURCES / "tests/bench/edge.c"), "-o", str(program)),
         ],
         check=True,
     )
@@ -380,6 +384,33 @@ def failures(costs: list[Cost], record: list[Cost]) -> list[str]:
         old = before.get(key(c))
         if old is not None and (c.avg > DEARER_MAX * old.avg or c.max > DEARER_MAX * old.max):
             result.append(f"{name}: {c.avg} / {c.max} after {old.avg} / {old.max}")
+    return result
+
+
+def figures(costs: list[Cost], sizes: list[Size]) -> list[Figure]:
+    """All of it, with the targets."""
+    result = []
+    for c in costs:
+        limits = {}
+        if c.cpu == "cortex-m4" and c.function in TARGETS:
+            avg, worst = TARGETS[c.function]
+            if c.function == SOFTWARE and c.edges in ("all", TURN):
+                worst = TURN_WORST
+            limits = {"max_max": worst}
+            if c.edges == "all":
+                limits = {"avg_max": avg, **limits}
+        name = f"Arm edge, {c.function}, {c.optimization}, {c.edges}"
+        options = "Unicorn, runs of 1 to 1,024 edges"
+        values = (c.min, c.avg, c.max)
+        result.append(Figure(name, c.cpu, options, *values, "instructions", None, limits, True))
+    for s in sizes:
+        for what, value in (
+            ("code of the law", s.law_code),
+            ("code of the interrupt that decodes", s.interrupt_code),
+            ("state of the law", s.law_state),
+        ):
+            name = f"Arm, {what}, {s.optimization}"
+            result.append(Figure(name, s.cpu, "", *(3 * [value]), "bytes", None, {}, True))
     return result
 
 
