@@ -56,21 +56,27 @@ void lw_native_cam_run(struct lw_cam *cam, const int32_t *runs, size_t run_count
 		       const struct lw_cam_table *next, struct lw_native_cam_result *result,
 		       int64_t *trace_pos, size_t trace_stride, size_t trace_capacity)
 {
+	static const unsigned int EDGES_OF_A_TICK = 7; /* so that prepared pieces run out, too */
+	struct lw_cam_ring ring = {0};
 	size_t until_trace = 0;
 
-	*result = (struct lw_native_cam_result){.min_pos = cam->pos_usteps,
-						.max_pos = cam->pos_usteps};
+	*result = (struct lw_native_cam_result){.min_pos = lw_cam_pos(cam),
+						.max_pos = lw_cam_pos(cam)};
 	for (size_t run = 0; run < run_count; run++) {
 		const int dd = runs[run] < 0 ? -1 : 1;
 		const int64_t edges = runs[run] < 0 ? -(int64_t)runs[run] : runs[run];
 
 		for (int64_t i = 0; i < edges; i++) {
 			if (until_trace-- == 0 && result->trace_count < trace_capacity) {
-				trace_pos[result->trace_count++] = cam->pos_usteps;
+				trace_pos[result->trace_count++] = lw_cam_pos(cam);
 				until_trace = trace_stride - 1;
 			}
 
-			const int step = lw_cam_edge(cam, dd, next);
+			if (result->edges % EDGES_OF_A_TICK == 0) {
+				lw_cam_ring_fill(&ring, cam);
+			}
+
+			const int step = lw_cam_edge(cam, dd, next, &ring);
 			const int magnitude = step < 0 ? -step : step;
 
 			next = cam->table == next ? NULL : next;
@@ -79,17 +85,17 @@ void lw_native_cam_run(struct lw_cam *cam, const int32_t *runs, size_t run_count
 			if (magnitude > result->step_max) {
 				result->step_max = magnitude;
 			}
-			if (cam->pos_usteps < result->min_pos) {
-				result->min_pos = cam->pos_usteps;
+			if (lw_cam_pos(cam) < result->min_pos) {
+				result->min_pos = lw_cam_pos(cam);
 			}
-			if (cam->pos_usteps > result->max_pos) {
-				result->max_pos = cam->pos_usteps;
+			if (lw_cam_pos(cam) > result->max_pos) {
+				result->max_pos = lw_cam_pos(cam);
 			}
 		}
 	}
-	result->pos = cam->pos_usteps;
-	result->row = cam->row;
-	result->cycles = cam->cycles;
+	result->pos = lw_cam_pos(cam);
+	result->row = cam->piece.row;
+	result->cycles = cam->piece.cycles;
 }
 
 /** Layout of what Python copies. */
@@ -124,19 +130,32 @@ const struct lw_layout lw_layout_cam[] = {
 	LW_LAYOUT_MEMBER(lw_cam_statistics, max_usteps),
 	LW_LAYOUT_MEMBER(lw_cam_statistics, slope_max_permille),
 	LW_LAYOUT_MEMBER(lw_cam_statistics, slope_max_row),
+	LW_LAYOUT_STRUCT(lw_cam_numbers),
+	LW_LAYOUT_MEMBER(lw_cam_numbers, remainder),
+	LW_LAYOUT_MEMBER(lw_cam_numbers, slope),
+	LW_LAYOUT_MEMBER(lw_cam_numbers, whole),
+	LW_LAYOUT_MEMBER(lw_cam_numbers, remainder_high),
+	LW_LAYOUT_MEMBER(lw_cam_numbers, slope_high),
+	LW_LAYOUT_STRUCT(lw_cam_point),
+	LW_LAYOUT_MEMBER(lw_cam_point, numbers),
+	LW_LAYOUT_MEMBER(lw_cam_point, left),
+	LW_LAYOUT_MEMBER(lw_cam_point, pos_usteps),
+	LW_LAYOUT_STRUCT(lw_cam_piece),
+	LW_LAYOUT_MEMBER(lw_cam_piece, den),
+	LW_LAYOUT_MEMBER(lw_cam_piece, curve),
+	LW_LAYOUT_MEMBER(lw_cam_piece, first_at),
+	LW_LAYOUT_MEMBER(lw_cam_piece, edges),
+	LW_LAYOUT_MEMBER(lw_cam_piece, cycles),
+	LW_LAYOUT_MEMBER(lw_cam_piece, row),
+	LW_LAYOUT_MEMBER(lw_cam_piece, whole_curve),
+	LW_LAYOUT_MEMBER(lw_cam_piece, kind),
 	LW_LAYOUT_STRUCT(lw_cam),
-	LW_LAYOUT_MEMBER(lw_cam, remainder),
-	LW_LAYOUT_MEMBER(lw_cam, den),
-	LW_LAYOUT_MEMBER(lw_cam, slope),
-	LW_LAYOUT_MEMBER(lw_cam, curve),
-	LW_LAYOUT_MEMBER(lw_cam, at),
-	LW_LAYOUT_MEMBER(lw_cam, piece_begin),
-	LW_LAYOUT_MEMBER(lw_cam, piece_end),
-	LW_LAYOUT_MEMBER(lw_cam, stride),
-	LW_LAYOUT_MEMBER(lw_cam, pos_usteps),
+	LW_LAYOUT_MEMBER(lw_cam, point),
+	LW_LAYOUT_MEMBER(lw_cam, piece),
 	LW_LAYOUT_MEMBER(lw_cam, offset),
-	LW_LAYOUT_MEMBER(lw_cam, row),
-	LW_LAYOUT_MEMBER(lw_cam, cycles),
+	LW_LAYOUT_MEMBER(lw_cam, was_pos),
+	LW_LAYOUT_MEMBER(lw_cam, serial),
+	LW_LAYOUT_MEMBER(lw_cam, stride),
 	LW_LAYOUT_MEMBER(lw_cam, table),
 	LW_LAYOUT_MEMBER(lw_cam, scale),
 	LW_LAYOUT_STRUCT(lw_native_cam_result),

@@ -52,6 +52,7 @@ void hardware_interrupt(void);
 void software_interrupt(void);
 int setup_cam(int interpolation, uint32_t count);
 int cam_edge(int dd);
+void prepare_cam(void);
 
 /** The factory pattern, every transition an edge, at a position and slope. @return Ks */
 int setup(int32_t m, int32_t u)
@@ -110,6 +111,12 @@ void software_interrupt(void)
 	give(lw_controller_encoder(&controller, levels & 2, levels & 1), &exti_timer_9.pulse_cr1);
 }
 
+/** What the supervisor does for the cam in every tick. */
+void prepare_cam(void)
+{
+	lw_cam_motion_prepare(&controller.motion.cam);
+}
+
 /** Follow the table in cam_rows from its begin. @return 0, or what is wrong with it */
 int setup_cam(int interpolation, uint32_t count)
 {
@@ -133,9 +140,13 @@ int setup_cam(int interpolation, uint32_t count)
 
 	lw_cam_start(&cam->cam, &bank.table, &scale, 0, 0);
 	cam->steps_max = LW_CAM_STEPS_PER_EDGE_MAX;
-	cam->edges = controller.motion.edges;
+	cam->unfollowed_edges = controller.motion.unfollowed_edges;
 	cam->on = true;
+	cam->ring.count = 0;
+	prepare_cam();
 	controller.motion.law.open_span = 0;
+	/* What the first edge after a change does. */
+	lw_cam_motion_open(cam, 1);
 	return 0;
 }
 

@@ -10,7 +10,8 @@
 #include "lw/control/cam_check.h"
 #include "lw/control/controller.h"
 
-#define EDGES 1000
+#define EDGES           1000
+#define EDGES_OF_A_TICK 48 /* of the supervisor, at 48,000 edges/s */
 
 int encoder_interrupt(struct lw_controller *controller, bool a, bool b);
 
@@ -57,7 +58,7 @@ static int follow_cam(struct lw_controller *controller, struct lw_params *params
 	scale = lw_cam_params_scale(params);
 	lw_cam_start(&cam->cam, table, &scale, 0, 0);
 	cam->steps_max = LW_CAM_STEPS_PER_EDGE_MAX;
-	cam->edges = controller->motion.edges;
+	cam->unfollowed_edges = controller->motion.unfollowed_edges;
 	cam->on = true;
 	return 0;
 }
@@ -94,6 +95,9 @@ int main(int argc, char **argv)
 		return EXIT_FAILURE;
 	}
 	for (int i = 0; i < EDGES; i++) {
+		if (controller.motion.cam.on && i % EDGES_OF_A_TICK == 0) {
+			lw_cam_motion_prepare(&controller.motion.cam);
+		}
 		edge(&controller, &phase, direction_change && i % 2 ? -1 : 1);
 	}
 	printf("%u steps, at %d\n", controller.motion.steps, lw_motion_m(&controller.motion));

@@ -136,7 +136,7 @@ def rows(figures: Figures) -> list[tuple[str, str, str]]:
         *(
             (
                 f"An edge that a cam takes, {kind} rows; the same on x86-64 with decoding",
-                "",
+                targets[f"cam, {kind}"],
                 f"{slashed(figures, f'cam, {kind}')}; {cam['avg']:.0f}, {cam['max']:.0f}",
             )
             for kind, cam in zip(("linear", "trapezoid"), cams, strict=True)

@@ -24,12 +24,14 @@ PROVE_TIMEOUT_S = 60  # of one prover for one goal; what is proved takes about a
 MUTANT_TIMEOUT_S = 4
 
 # C11, 6.3.1.3, which WP does not know; where C leaves it to the compiler, conversions.c tries it.
-AXIOMS = {"uint32_below", "uint32_above", "int32_above", "uint16_of_uint32"}
+AXIOMS = {"uint32_below", "uint32_above", "int32_above", "uint16_of_uint32", "uint32_of_uint64"}
 BYTES = "lw_record_open,erased,lw_crc32,lw_crc32_add,lw_crc16,"
 BYTES += "lw_rtu_receive,lw_rtu_poll,lw_rtu_drop,is_complete,lw_rtu_deadline_us,lw_rtu_seal,"
 BYTES += "lw_param_record_decode,is_schema_1,decode_1,decode_2,take,get32_1"
 BANK = "lw_bank_read_registers,lw_bank_read_bits,lw_point_allows,"
 BANK += "check_known,find,find_in,point_before,registers_of,load,lw_refuse,lw_clamp32"
+CAM = "lw_cam_inside_straight,lw_cam_inside_curved,lw_cam_inside_wide,lw_cam_numerator,"
+CAM += "straight_there_and_back,curved_there_and_back"
 TOGETHER = "lw_law_short_edges,lw_law_edges_to_step"
 PROOFS = {
     # A shift, which WP has no rules for when negative: conversions.c tries it on every value. And
@@ -39,6 +41,7 @@ PROOFS = {
     # That a called pointer is a function, WP knows from the annotation `calls`.
     "bank.c": (f"-wp-fct={BANK}", "-rte-no-pointer-call"),
     "orbit.c": (),
+    "cam.c": (f"-wp-fct={CAM}",),
 }
 # Z3 adds nothing for the bank but time.
 PROVERS = {"bank.c": "cvc4"}
@@ -66,6 +69,7 @@ RTU_C = "lib/lw_core/src/modbus/rtu.c"
 BANK_C = "lib/lw_core/src/modbus/bank.c"
 PARAMS_C = "lib/lw_core/src/storage/param_record.c"
 CRC16_C = "lib/lw_core/src/modbus/crc16.c"
+CAM_H = "lib/lw_core/include/lw/cam/cam.h"
 ORBIT_H = "tests/proofs/orbit.h"
 FAR_POINT = ("far_point_is_on_orbit", "orbit.c")
 EDGE = "lw_law_short_edge"
@@ -81,6 +85,9 @@ READ = ("lw_bank_read_registers", "bank.c", "@requires")
 CHANGE = "lw_law_slope_change"
 RESTS = "lw_law_rests"
 PASS = "pass_far_point"
+STRAIGHT = ("lw_cam_inside_straight", "cam.c")
+CURVED = ("lw_cam_inside_curved", "cam.c")
+WIDE = ("lw_cam_inside_wide", "cam.c")
 TRIANGLE = ("breaker_adds", "law.c", "triangle")
 MUTANTS = (
     Mutant(LAW_H, "? law->ka : -law->ka", "? -law->ka : law->ka", CHANGE),
@@ -112,6 +119,22 @@ MUTANTS = (
     Mutant(BANK_C, "sections[i].space == space", "sections[i].space != space", *FIND),
     Mutant(BANK_C, "at + element * sizeof(wide)", "at + 2 + element * sizeof(wide)", *LOAD),
     Mutant(BANK_C, "lw_put16(&out[2 * i],", "lw_put16(&out[2 * i + 1],", *READ),
+    # A cam's edge inside of a piece.
+    Mutant(CAM_H, "steps = -point->numbers.whole;", "steps = point->numbers.whole;", *STRAIGHT),
+    Mutant(
+        CAM_H,
+        "slope += curve;\n\t\tif (slope >= den) {\n\t\t\tslope -= den;\n\t\t\twhole++;\n"
+        "\t\t}\n\t\tpoint",
+        "slope += curve;\n\t\tpoint",
+        *CURVED,
+    ),
+    Mutant(
+        CAM_H, "return lw_cam_inside_straight(cam, dd);\n}\n\n/**", "return 0;\n}\n\n/**", *CURVED
+    ),
+    Mutant(
+        CAM_H, "slope -= curve;\n\t\tif (slope < 0)", "slope -= curve;\n\t\tif (slope <= 0)", *WIDE
+    ),
+    Mutant(CAM_H, "(uint64_t)slope / 0x100000000", "(uint64_t)slope / 0x80000000", *WIDE),
     Mutant(CRC16_C, "i < count", "i <= count", "lw_crc16", "bytes.c", "-@ensures"),
 )
 

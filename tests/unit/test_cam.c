@@ -4,6 +4,7 @@
 
 #include <string.h>
 
+#include "law_check.h"
 #include "lw/cam/cam.h"
 
 static struct lw_cam_table table;
@@ -11,6 +12,8 @@ static struct lw_cam_scale scale;
 static struct lw_cam_limits limits;
 static struct lw_cam_statistics statistics;
 static struct lw_cam_refusal why;
+static struct lw_cam cam;
+static struct lw_cam_ring ring;
 
 static void set_rows(const struct lw_cam_row *rows, size_t count)
 {
@@ -35,6 +38,25 @@ void setUp(void)
 
 void tearDown(void)
 {
+}
+
+/** Begin on the table at an edge. */
+static void start(int64_t edges)
+{
+	lw_cam_start(&cam, &table, &scale, edges, 0);
+	ring = (struct lw_cam_ring){0};
+	lw_cam_ring_fill(&ring, &cam);
+}
+
+/** With pieces prepared now and then. */
+static int take_edge(int dd)
+{
+	static unsigned int edges;
+
+	if (edges++ % 50 == 0) {
+		lw_cam_ring_fill(&ring, &cam);
+	}
+	return lw_cam_edge(&cam, dd, NULL, &ring);
 }
 
 static void accepted(void)
@@ -180,7 +202,6 @@ static void test_what_does_not_fit_64_bits(void)
 /** The longest row that passes, through every piece of it and both ways, under the sanitizer. */
 static void check_longest_row(enum lw_cam_interpolation interpolation, int32_t slave, int32_t way)
 {
-	struct lw_cam cam;
 	int64_t from;
 	int32_t edges;
 
@@ -192,22 +213,22 @@ static void check_longest_row(enum lw_cam_interpolation interpolation, int32_t s
 		table.rows[1].master = why.limit;
 	}
 	edges = (int32_t)statistics.cycle_edges;
-	lw_cam_start(&cam, &table, &scale, 0, 0);
-	from = cam.pos_usteps;
+	start(0);
+	from = lw_cam_pos(&cam);
 	for (int32_t edge = 0; edge < 2 * edges; edge++) {
-		const int steps = lw_cam_edge(&cam, 1, NULL);
+		const int steps = take_edge(1);
 
 		TEST_ASSERT_TRUE(-4 <= steps && steps <= 4);
 	}
-	TEST_ASSERT_EQUAL_INT32(2, cam.cycles);
+	TEST_ASSERT_EQUAL_INT32(2, cam.piece.cycles);
 	TEST_ASSERT_INT64_WITHIN(1, from + 2 * (int64_t)way * scale.usteps / scale.slave_units,
-				 cam.pos_usteps);
+				 lw_cam_pos(&cam));
 	for (int32_t edge = 0; edge < 3 * edges; edge++) {
-		(void)lw_cam_edge(&cam, -1, NULL);
+		(void)take_edge(-1);
 	}
-	TEST_ASSERT_EQUAL_INT32(-1, cam.cycles);
+	TEST_ASSERT_EQUAL_INT32(-1, cam.piece.cycles);
 	TEST_ASSERT_INT64_WITHIN(1, from - (int64_t)way * scale.usteps / scale.slave_units,
-				 cam.pos_usteps);
+				 lw_cam_pos(&cam));
 }
 
 static void test_the_largest_numerators_do_not_overflow(void)
@@ -222,18 +243,110 @@ static void test_the_largest_numerators_do_not_overflow(void)
 /** Endless gearing does not end at 32 bits of microsteps. */
 static void test_gearing_runs_past_32_bits(void)
 {
-	struct lw_cam cam;
-
 	SET_ROWS({0, 0}, {1, 4});
 	table.advance = 4;
 	accepted();
-	lw_cam_start(&cam, &table, &scale, INT32_MAX - 5, 0);
-	TEST_ASSERT_EQUAL_INT64(4 * ((int64_t)INT32_MAX - 5), cam.pos_usteps);
+	start(INT32_MAX - 5);
+	TEST_ASSERT_EQUAL_INT64(4 * ((int64_t)INT32_MAX - 5), lw_cam_pos(&cam));
 	for (int edge = 0; edge < 5; edge++) {
-		TEST_ASSERT_EQUAL_INT(4, lw_cam_edge(&cam, 1, NULL));
+		TEST_ASSERT_EQUAL_INT(4, take_edge(1));
 	}
-	TEST_ASSERT_EQUAL_INT64(4 * (int64_t)INT32_MAX, cam.pos_usteps);
-	TEST_ASSERT_EQUAL_INT32(INT32_MAX, cam.cycles);
+	TEST_ASSERT_EQUAL_INT64(4 * (int64_t)INT32_MAX, lw_cam_pos(&cam));
+	TEST_ASSERT_EQUAL_INT32(INT32_MAX, cam.piece.cycles);
+}
+
+/** Wherever the master goes, and whenever pieces are prepared, they are what is evaluated. */
+static void test_prepared_pieces_are_what_is_evaluated(void)
+{
+	static const struct lw_cam_row rows[] = {{0, -7},    {9, 1},    {12, 1},
+						 {400, -20}, {500, 40}, {611, 5}};
+	struct lw_cam_ring none = {0};
+	struct lw_cam_table next;
+	uint64_t seed = 3;
+
+	for (unsigned int i = 0; i < 4; i++) {
+		struct lw_cam evaluated;
+		unsigned int prepared = 0;
+
+		table.interpolation = i % 2;
+		table.advance = 12;
+		set_rows(rows, sizeof(rows) / sizeof(rows[0]));
+		scale = i < 2 ? lw_cam_scale(1, 1, 1, 1, 10) : lw_cam_scale(3, 7, 9, 5, 16);
+		accepted();
+		next = table;
+		next.rows[3].slave = -29;
+		start(-777);
+		evaluated = cam;
+		for (int run = 0; run < 500; run++) {
+			const int dd = next_random(&seed) % 3 ? 1 : -1;
+			/* Now and then another table waits. */
+			const struct lw_cam_table *other = next_random(&seed) % 8      ? NULL
+							   : evaluated.table == &table ? &next
+										       : &table;
+
+			for (uint32_t count = next_random(&seed) % 300 + 1; count > 0; count--) {
+				const uint32_t serial = cam.serial + (uint32_t)dd;
+
+				if (next_random(&seed) % 64 == 0) {
+					lw_cam_ring_fill(&ring, &cam);
+				}
+				prepared += serial - ring.begin < ring.count &&
+					    cam.point.left == (dd > 0 ? 0 : cam.piece.edges);
+				TEST_ASSERT_EQUAL_INT(lw_cam_edge(&evaluated, dd, other, &none),
+						      lw_cam_edge(&cam, dd, other, &ring));
+				TEST_ASSERT_EQUAL_PTR(evaluated.table, cam.table);
+				TEST_ASSERT_EQUAL_MEMORY(&evaluated.point, &cam.point,
+							 sizeof(cam.point));
+				TEST_ASSERT_EQUAL_MEMORY(&evaluated.piece, &cam.piece,
+							 sizeof(cam.piece));
+			}
+		}
+		TEST_ASSERT_GREATER_THAN_UINT(100, prepared);
+	}
+}
+
+/** Half of what there is room for lies on either side, after a look and after many edges. */
+static void test_pieces_are_prepared_on_both_sides(void)
+{
+	table.interpolation = LW_CAM_INTERPOLATION_TRAPEZOID;
+	start(150);
+	for (int i = 0; i < 600; i++) {
+		const uint32_t behind = cam.serial - ring.begin;
+
+		TEST_ASSERT_EQUAL_UINT32(LW_CAM_RING_SLOTS, ring.count);
+		TEST_ASSERT_TRUE(behind >= LW_CAM_RING_SLOTS / 2 - 1 &&
+				 behind <= LW_CAM_RING_SLOTS / 2);
+		(void)lw_cam_edge(&cam, i < 400 ? 1 : -1, NULL, &ring);
+		lw_cam_ring_fill(&ring, &cam);
+	}
+}
+
+/** Numerators have 32 bit up to the longest row that lets them, and 64 from there on. */
+static void test_numerators_are_as_wide_as_a_row_needs(void)
+{
+	/* Linear: 2 * 7 * length * 10, or a tenth where the length is round. */
+	scale = lw_cam_scale(1, 1, 1, 7, 10);
+	SET_ROWS({0, 0}, {7669583, 3}, {15339170, 9}, {23008760, 0});
+	accepted();
+	start(0);
+	TEST_ASSERT_EQUAL_UINT16(LW_CAM_STRAIGHT, cam.piece.kind);
+	start(7669583);
+	TEST_ASSERT_EQUAL_UINT16(LW_CAM_WIDE, cam.piece.kind);
+	start(15339170);
+	TEST_ASSERT_EQUAL_UINT16(LW_CAM_STRAIGHT, cam.piece.kind);
+	scale = lw_cam_scale(1, 1, 1, 1, 10);
+	/* A ramp of a trapezoid: 2 * 9 * length^2, or a hundredth where the length is round. */
+	table.interpolation = LW_CAM_INTERPOLATION_TRAPEZOID;
+	SET_ROWS({0, 0}, {7723, 3}, {7723 + 7727, 6}, {7723 + 7727 + 77230, 0});
+	accepted();
+	start(0);
+	TEST_ASSERT_EQUAL_UINT16(LW_CAM_CURVED, cam.piece.kind);
+	start(7723);
+	TEST_ASSERT_EQUAL_UINT16(LW_CAM_WIDE, cam.piece.kind);
+	start(7723 + 7727 / 2);
+	TEST_ASSERT_EQUAL_UINT16(LW_CAM_STRAIGHT, cam.piece.kind);
+	start(7723 + 7727);
+	TEST_ASSERT_EQUAL_UINT16(LW_CAM_CURVED, cam.piece.kind);
 }
 
 int main(void)
@@ -249,5 +362,8 @@ int main(void)
 	RUN_TEST(test_what_does_not_fit_64_bits);
 	RUN_TEST(test_the_largest_numerators_do_not_overflow);
 	RUN_TEST(test_gearing_runs_past_32_bits);
+	RUN_TEST(test_prepared_pieces_are_what_is_evaluated);
+	RUN_TEST(test_pieces_are_prepared_on_both_sides);
+	RUN_TEST(test_numerators_are_as_wide_as_a_row_needs);
 	return UNITY_END();
 }

@@ -22,17 +22,19 @@ static struct lw_cam_table pit = {.row_count = 3, .rows = {{0, 0}, {50, -50}, {1
 static struct lw_cam_scale scale;
 static struct lw_cam_motion motion;
 static uint32_t odometer;
+static uint32_t unfollowed;
 static int32_t given; /**< sum of the steps */
 static int most;      /**< of one edge */
 
 /** Begin in step, the odometer here. */
 static void begin_at(const struct lw_cam_table *table, int32_t edges)
 {
-	motion = (struct lw_cam_motion){.on = true, .steps_max = 4, .edges = (uint32_t)edges};
+	motion = (struct lw_cam_motion){.on = true, .steps_max = 4};
 	odometer = (uint32_t)edges;
+	unfollowed = 0;
 	lw_cam_start(&motion.cam, table, &scale, edges, 0);
-	motion.cam.cycles = 0;
-	given = (int32_t)motion.cam.pos_usteps;
+	lw_cam_count_from_here(&motion.cam);
+	given = (int32_t)motion.cam.point.pos_usteps;
 	most = 0;
 }
 
@@ -52,7 +54,8 @@ static int edge(int dd)
 	int steps;
 
 	odometer += (uint32_t)dd;
-	steps = lw_cam_motion_edge(&motion, odometer, dd);
+	lw_cam_motion_prepare(&motion);
+	steps = lw_cam_motion_edge(&motion, unfollowed, dd);
 	given += steps;
 	if (abs(steps) > most) {
 		most = abs(steps);
@@ -184,6 +187,7 @@ static void test_edges_that_were_not_taken_are_caught_up(void)
 	for (int32_t missed = -60; missed <= 60; missed += 24) {
 		setUp();
 		odometer += (uint32_t)missed;
+		unfollowed += (uint32_t)missed;
 		(void)edge(1);
 		TEST_ASSERT_EQUAL_INT32(hill_at(missed + 1 + motion.phase_edges),
 					given + motion.owed_usteps);
@@ -194,12 +198,17 @@ static void test_edges_that_were_not_taken_are_caught_up(void)
 	}
 }
 
-static void test_the_odometer_may_wrap(void)
+static void test_the_count_of_edges_not_taken_may_wrap(void)
 {
-	odometer = motion.edges = (uint32_t)-3;
+	unfollowed = motion.unfollowed_edges = (uint32_t)-3;
 	edges(10);
 	TEST_ASSERT_EQUAL_INT32(0, motion.phase_edges);
-	TEST_ASSERT_EQUAL_INT32(hill_at(10), given);
+	unfollowed += 7;
+	(void)edge(1);
+	TEST_ASSERT_EQUAL_INT32(-7 + 1, motion.phase_edges);
+	edges(CYCLE);
+	TEST_ASSERT_EQUAL_INT32(0, motion.phase_edges);
+	TEST_ASSERT_EQUAL_INT32(hill_at(7 + 11), given);
 }
 
 /** Stand at the first slave position, in the middle of a cycle of the master. */
@@ -223,10 +232,10 @@ static void test_waits_for_the_next_cycle_forward(void)
 		(void)edge(1);
 		TEST_ASSERT_EQUAL_INT32(hill_at(n), given);
 		TEST_ASSERT_FALSE(motion.waiting);
-		TEST_ASSERT_EQUAL_INT32(n / CYCLE, motion.cam.cycles);
+		TEST_ASSERT_EQUAL_INT32(n / CYCLE, motion.cam.piece.cycles);
 	}
 	edges(-3 * CYCLE);
-	TEST_ASSERT_EQUAL_INT32(-1, motion.cam.cycles);
+	TEST_ASSERT_EQUAL_INT32(-1, motion.cam.piece.cycles);
 	TEST_ASSERT_EQUAL_INT32(hill_at(-1), given);
 }
 
@@ -240,7 +249,7 @@ static void test_waits_for_the_next_cycle_backward(void)
 		(void)edge(-1);
 		TEST_ASSERT_EQUAL_INT32(hill_at(-n), given);
 		TEST_ASSERT_FALSE(motion.waiting);
-		TEST_ASSERT_EQUAL_INT32(-1 - (n - 1) / CYCLE, motion.cam.cycles);
+		TEST_ASSERT_EQUAL_INT32(-1 - (n - 1) / CYCLE, motion.cam.piece.cycles);
 	}
 }
 
@@ -284,7 +293,7 @@ static void test_goes_over_to_the_next_table_forward(void)
 	}
 	TEST_ASSERT_NULL(motion.next);
 	TEST_ASSERT_EQUAL_PTR(&pit, motion.cam.table);
-	TEST_ASSERT_EQUAL_INT32(2, motion.cam.cycles);
+	TEST_ASSERT_EQUAL_INT32(2, motion.cam.piece.cycles);
 	for (int32_t n = 0; n < 350; n++) {
 		TEST_ASSERT_EQUAL_INT32(pit_at(n), given);
 		(void)edge(1);
@@ -309,7 +318,7 @@ static void test_goes_over_to_the_next_table_backward(void)
 		TEST_ASSERT_EQUAL_PTR(&pit, motion.cam.table);
 		TEST_ASSERT_EQUAL_INT32(pit_at(-n), given);
 	}
-	TEST_ASSERT_EQUAL_INT32(-1 - 348 / 100, motion.cam.cycles);
+	TEST_ASSERT_EQUAL_INT32(-1 - 348 / 100, motion.cam.piece.cycles);
 }
 
 /** The master passes the boundary by a shift of its phase, with the drum going the other way. */
@@ -400,6 +409,53 @@ static void test_a_reading_is_of_one_moment(void)
 	TEST_ASSERT_EQUAL_INT(0, timer_delete(timer));
 }
 
+/** The edge interrupt, one edge of it, that finds prepared what the supervisor has got done. */
+static void on_edge(int number)
+{
+	(void)number;
+	interrupts++;
+	for (int i = 0; i < 3; i++) {
+		const int dd = interrupts / 400 % 2 ? -1 : 1;
+
+		odometer += (uint32_t)dd;
+		given += lw_cam_motion_edge(&motion, unfollowed, dd);
+	}
+}
+
+/** Three pieces of a row of 7 edges pass in a moment: many come while others are prepared. */
+static void test_preparing_may_be_interrupted(void)
+{
+	static const struct lw_cam_table waves = {.interpolation = LW_CAM_INTERPOLATION_TRAPEZOID,
+						  .row_count = 4,
+						  .rows = {{0, 0}, {7, 20}, {14, -1}, {40, 0}}};
+	const struct itimerspec period = {{0, 15000}, {0, 15000}};
+	const struct sigaction action = {.sa_handler = on_edge};
+	struct lw_cam_motion apart;
+	timer_t timer;
+
+	scale = lw_cam_scale(1, 1, 1, 1, 4);
+	begin_at(&waves, 0);
+	apart = motion;
+	interrupts = 0;
+	TEST_ASSERT_EQUAL_INT(0, sigaction(SIGALRM, &action, NULL));
+	TEST_ASSERT_EQUAL_INT(0, timer_create(CLOCK_MONOTONIC, NULL, &timer));
+	TEST_ASSERT_EQUAL_INT(0, timer_settime(timer, 0, &period, NULL));
+	while (interrupts < 3000) {
+		lw_cam_motion_prepare(&motion);
+	}
+	TEST_ASSERT_EQUAL_INT(0, timer_delete(timer));
+	for (int i = 0; i < interrupts; i++) {
+		for (int edge = 0; edge < 3; edge++) {
+			const int dd = (i + 1) / 400 % 2 ? -1 : 1;
+
+			given -= lw_cam_motion_edge(&apart, 0, dd);
+		}
+	}
+	TEST_ASSERT_EQUAL_INT32(0, given);
+	TEST_ASSERT_EQUAL_MEMORY(&apart.cam.point, &motion.cam.point, sizeof(apart.cam.point));
+	TEST_ASSERT_EQUAL_MEMORY(&apart.cam.piece, &motion.cam.piece, sizeof(apart.cam.piece));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -409,7 +465,7 @@ int main(void)
 	RUN_TEST(test_the_phase_shifts_without_a_burst);
 	RUN_TEST(test_a_shift_waits_until_nothing_is_owed);
 	RUN_TEST(test_edges_that_were_not_taken_are_caught_up);
-	RUN_TEST(test_the_odometer_may_wrap);
+	RUN_TEST(test_the_count_of_edges_not_taken_may_wrap);
 	RUN_TEST(test_waits_for_the_next_cycle_forward);
 	RUN_TEST(test_waits_for_the_next_cycle_backward);
 	RUN_TEST(test_the_phase_waits_too);
@@ -420,5 +476,6 @@ int main(void)
 	RUN_TEST(test_a_queued_table_that_is_withdrawn_is_not_taken);
 	RUN_TEST(test_a_reading);
 	RUN_TEST(test_a_reading_is_of_one_moment);
+	RUN_TEST(test_preparing_may_be_interrupted);
 	return UNITY_END();
 }

@@ -350,6 +350,11 @@ static void test_timer_edges_stop_at_rest_at_the_side_asked_for(void)
 	}
 }
 
+static int long_edge(struct lw_motion *of, int dd)
+{
+	return dd > 0 ? lw_motion_long_forward(of) : lw_motion_long_backward(of);
+}
+
 static void test_drum_edges_do_not_stop_at_rest(void)
 {
 	motion.stop_at_rest = LW_MOTION_PLUS | LW_MOTION_MINUS;
@@ -383,13 +388,13 @@ static void test_the_short_way_does_what_the_long_way_does(void)
 		lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
 		long_way = motion;
 		edges(1, 1);
-		(void)lw_motion_long_edge(&long_way, 1);
+		(void)lw_motion_long_forward(&long_way);
 		for (int run = 0; run < 200; run++) {
 			const int dd = next_random(&seed) % 8 ? 1 : -1;
 
 			for (uint32_t count = next_random(&seed) % 1024 + 1; count > 0; count--) {
 				TEST_ASSERT_EQUAL_UINT32(motion.law.span, motion.law.open_span);
-				TEST_ASSERT_EQUAL_INT(lw_motion_long_edge(&long_way, dd),
+				TEST_ASSERT_EQUAL_INT(long_edge(&long_way, dd),
 						      lw_motion_edge(&motion, dd));
 				TEST_ASSERT_TRUE(law_same(&long_way.law, &motion.law));
 				TEST_ASSERT_TRUE(law_on_orbit(&motion.law, &window));
@@ -587,11 +592,148 @@ static void test_steps_of_a_cam_are_counted_either_way(void)
 		lw_cam_start(&motion.cam.cam, &hill, &scale, 0, 0);
 		edges(1, 50);
 		TEST_ASSERT_EQUAL_INT32(50 * slope, steps_sum);
-		TEST_ASSERT_EQUAL_UINT32(50 * slope, motion.steps);
-		TEST_ASSERT_EQUAL_INT32(1, motion.last_step);
+		TEST_ASSERT_EQUAL_UINT32(50 * slope, lw_motion_read(&motion).steps);
+		TEST_ASSERT_EQUAL_INT(1, lw_motion_direction(&motion));
 		edges(-1, 20);
-		TEST_ASSERT_EQUAL_UINT32(70 * slope, motion.steps);
-		TEST_ASSERT_EQUAL_INT32(-1, motion.last_step);
+		TEST_ASSERT_EQUAL_UINT32(70 * slope, lw_motion_read(&motion).steps);
+		TEST_ASSERT_EQUAL_INT(-1, lw_motion_direction(&motion));
+	}
+}
+
+/** Steep, flat and level rows: straight and curved pieces, with numerators of 32 and of 64 bit. */
+static struct lw_cam_table hills = {
+	.row_count = 7,
+	.advance = -20,
+	.rows = {{0, 5}, {3, 9}, {40, -60}, {41, -60}, {600, 700}, {1200, 700}, {211203, -15}},
+};
+
+/** Follow the hills from somewhere. */
+static void follow_hills(struct lw_motion *of, enum lw_cam_interpolation interpolation)
+{
+	const struct lw_cam_scale scale = lw_cam_scale(7, 3, 5, 11, 10);
+
+	hills.interpolation = (uint16_t)interpolation;
+	of->cam = (struct lw_cam_motion){.on = true, .steps_max = 4};
+	lw_cam_start(&of->cam.cam, &hills, &scale, -700, 0);
+}
+
+static void assert_same_motion(const struct lw_motion *a, const struct lw_motion *b)
+{
+	const struct lw_motion_reading reading = lw_motion_read(a);
+	const struct lw_motion_reading expected = lw_motion_read(b);
+	const struct lw_cam_reading cam = lw_cam_motion_read(&a->cam);
+	const struct lw_cam_reading expected_cam = lw_cam_motion_read(&b->cam);
+
+	TEST_ASSERT_EQUAL_MEMORY(&expected_cam, &cam, sizeof(cam));
+	TEST_ASSERT_EQUAL_INT32(expected.m, reading.m);
+	TEST_ASSERT_EQUAL_INT32(expected.m, lw_motion_m(a));
+	TEST_ASSERT_EQUAL_UINT32(expected.steps, reading.steps);
+	TEST_ASSERT_EQUAL_INT(lw_motion_direction(b), lw_motion_direction(a));
+}
+
+static void test_the_cams_short_way_equals_its_long_way(void)
+{
+	for (int interpolation = 0; interpolation <= LW_CAM_INTERPOLATION_TRAPEZOID;
+	     interpolation++) {
+		uint64_t seed = 20;
+		int kinds = 0;
+		struct lw_motion long_way;
+
+		setUp();
+		follow_hills(&motion, (enum lw_cam_interpolation)interpolation);
+		long_way = motion;
+		for (int run = 0; run < 400; run++) {
+			const int dd = next_random(&seed) % 3 ? 1 : -1;
+
+			for (uint32_t count = next_random(&seed) % 700 + 1; count > 0; count--) {
+				if (next_random(&seed) % 32 == 0) {
+					lw_cam_motion_prepare(&motion.cam);
+				}
+				lw_cam_motion_close(&long_way.cam);
+				TEST_ASSERT_EQUAL_INT(lw_motion_encoder_edge(&long_way, dd),
+						      lw_motion_encoder_edge(&motion, dd));
+				TEST_ASSERT_EQUAL_INT32(motion.cam.cam.piece.kind * dd,
+							motion.cam.open);
+				kinds |= 1 << motion.cam.cam.piece.kind;
+				assert_same_motion(&motion, &long_way);
+			}
+		}
+		TEST_ASSERT_EQUAL_INT32(interpolation == LW_CAM_INTERPOLATION_TRAPEZOID
+						? 1 << LW_CAM_STRAIGHT | 1 << LW_CAM_CURVED |
+							  1 << LW_CAM_WIDE
+						: 1 << LW_CAM_STRAIGHT,
+					kinds);
+		/* All is accounted for where no edge moves the carriage any more. */
+		lw_motion_set_source(&motion, LW_EDGE_SOURCE_NONE);
+		TEST_ASSERT_EQUAL_INT32(0, motion.cam.ahead_usteps);
+		TEST_ASSERT_EQUAL_UINT32(long_way.law.rel, motion.law.rel);
+		assert_same_motion(&motion, &long_way);
+		edges(1, 3);
+		TEST_ASSERT_EQUAL_INT32(LW_CAM_CLOSED, motion.cam.open);
+		TEST_ASSERT_EQUAL_UINT32(3, motion.unfollowed_edges);
+		assert_same_motion(&motion, &long_way);
+		/* And what has not been followed is caught up. */
+		lw_motion_set_source(&motion, LW_EDGE_SOURCE_ENCODER);
+		edges(1, 1);
+		TEST_ASSERT_EQUAL_INT32(LW_CAM_CLOSED, motion.cam.open);
+		TEST_ASSERT_EQUAL_INT32(-2, motion.cam.phase_edges);
+		edges(1, 20);
+		TEST_ASSERT_EQUAL_INT32(0, motion.cam.phase_edges);
+		TEST_ASSERT_TRUE(motion.cam.open != LW_CAM_CLOSED);
+	}
+}
+
+static void test_what_is_asked_for_closes_the_cams_short_way(void)
+{
+	int32_t given;
+
+	follow_hills(&motion, LW_CAM_INTERPOLATION_LINEAR);
+	edges(1, 300);
+	TEST_ASSERT_EQUAL_INT32(LW_CAM_STRAIGHT, motion.cam.open);
+	lw_cam_motion_shift(&motion.cam, 4);
+	TEST_ASSERT_EQUAL_INT32(LW_CAM_CLOSED, motion.cam.open);
+	edges(1, 3);
+	TEST_ASSERT_EQUAL_INT32(3, motion.cam.phase_edges);
+	TEST_ASSERT_EQUAL_INT32(LW_CAM_CLOSED, motion.cam.open);
+	edges(-1, 1);
+	TEST_ASSERT_EQUAL_INT32(4, motion.cam.phase_edges);
+	TEST_ASSERT_EQUAL_INT32(-LW_CAM_STRAIGHT, motion.cam.open);
+
+	/* No step toward a blocked side, and they are told. */
+	edges(1, 300);
+	given = steps_sum;
+	lw_motion_block(&motion, LW_MOTION_PLUS, true);
+	lw_motion_block(&motion, LW_MOTION_MINUS, true);
+	edges(1, 300);
+	TEST_ASSERT_EQUAL_INT32(given, steps_sum);
+	TEST_ASSERT_EQUAL_INT32(LW_CAM_CLOSED, motion.cam.open);
+	TEST_ASSERT_TRUE(lw_motion_take_withheld(&motion) != 0);
+	lw_motion_block(&motion, LW_MOTION_PLUS, false);
+	lw_motion_block(&motion, LW_MOTION_MINUS, false);
+	edges(1, 1);
+	TEST_ASSERT_EQUAL_INT32(LW_CAM_STRAIGHT, motion.cam.open);
+}
+
+/** A day in one row: the steps that are added up never need more than 32 bit. */
+static void test_many_steps_of_a_cam_are_accounted_for_in_time(void)
+{
+	for (int sign = -1; sign <= 1; sign += 2) {
+		int64_t pos;
+
+		setUp();
+		follow_hills(&motion, LW_CAM_INTERPOLATION_LINEAR);
+		edges(1, 300);
+		motion.cam.ahead_usteps = sign * (INT32_MAX / 2 - 1000);
+		lw_cam_motion_prepare(&motion.cam);
+		TEST_ASSERT_EQUAL_INT32(LW_CAM_STRAIGHT, motion.cam.open);
+		motion.cam.ahead_usteps = sign * (INT32_MAX / 2 + 1000);
+		lw_cam_motion_prepare(&motion.cam);
+		TEST_ASSERT_EQUAL_INT32(LW_CAM_CLOSED, motion.cam.open);
+		pos = lw_cam_pos(&motion.cam.cam) + motion.cam.ahead_usteps - steps_sum;
+		edges(1, 1);
+		TEST_ASSERT_EQUAL_INT32(0, motion.cam.ahead_usteps);
+		TEST_ASSERT_EQUAL_INT32(LW_CAM_STRAIGHT, motion.cam.open);
+		TEST_ASSERT_EQUAL_INT64(pos + steps_sum, motion.cam.cam.was_pos);
 	}
 }
 
@@ -625,5 +767,8 @@ int main(void)
 	RUN_TEST(test_rebase_to_the_very_border);
 	RUN_TEST(test_swap_leaves_the_place_alone_and_a_correction_to_the_next_edge);
 	RUN_TEST(test_steps_of_a_cam_are_counted_either_way);
+	RUN_TEST(test_the_cams_short_way_equals_its_long_way);
+	RUN_TEST(test_what_is_asked_for_closes_the_cams_short_way);
+	RUN_TEST(test_many_steps_of_a_cam_are_accounted_for_in_time);
 	return UNITY_END();
 }

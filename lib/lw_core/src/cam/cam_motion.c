@@ -4,11 +4,38 @@
 #include <stddef.h>
 #include <string.h>
 
-/** One edge of the master on the table; over to the queued table where a cycle begins. */
-static int table_edge(struct lw_cam_motion *motion, int dd)
+/** The short way adds up no more steps than these, and those of a tick. */
+#define ACCOUNT_USTEPS (INT32_MAX / 2)
+
+void lw_cam_motion_close(struct lw_cam_motion *motion)
+{
+	atomic_signal_fence(memory_order_seq_cst);
+	*(volatile int32_t *)&motion->open = LW_CAM_CLOSED;
+	atomic_signal_fence(memory_order_seq_cst);
+}
+
+void lw_cam_motion_prepare(struct lw_cam_motion *motion)
+{
+	const int32_t since_usteps =
+		(int32_t)(motion->cam.point.pos_usteps + (uint32_t)motion->ahead_usteps -
+			  (uint32_t)motion->cam.was_pos);
+
+	if (since_usteps > ACCOUNT_USTEPS || since_usteps < -ACCOUNT_USTEPS) {
+		lw_cam_motion_close(motion);
+	}
+	lw_cam_ring_fill(&motion->ring, &motion->cam);
+}
+
+void lw_cam_motion_shift(struct lw_cam_motion *motion, int32_t phase_edges)
+{
+	motion->phase_target_edges = phase_edges;
+	lw_cam_motion_close(motion);
+}
+
+int lw_cam_motion_table_edge(struct lw_cam_motion *motion, int dd)
 {
 	const struct lw_cam_table *next = motion->next;
-	const int steps = lw_cam_edge(&motion->cam, dd, next);
+	const int steps = lw_cam_edge(&motion->cam, dd, next, &motion->ring);
 
 	if (next != NULL && motion->cam.table == next) {
 		motion->next = NULL;
@@ -16,19 +43,19 @@ static int table_edge(struct lw_cam_motion *motion, int dd)
 	return steps;
 }
 
-int lw_cam_motion_edge(struct lw_cam_motion *motion, uint32_t edges, int dd)
+int lw_cam_motion_edge(struct lw_cam_motion *motion, uint32_t unfollowed_edges, int dd)
 {
-	const int32_t cycles = motion->cam.cycles;
+	const int32_t cycles = motion->cam.piece.cycles;
 	const int32_t phase_target_edges = motion->phase_target_edges;
-	int steps = table_edge(motion, dd);
+	int steps = lw_cam_motion_table_edge(motion, dd);
 
 	/* Edges that were counted but not taken, as before the start, leave the master shifted. */
-	motion->phase_edges -= (int32_t)(edges - (uint32_t)dd - motion->edges);
-	motion->edges = edges;
+	motion->phase_edges -= (int32_t)(unfollowed_edges - motion->unfollowed_edges);
+	motion->unfollowed_edges = unfollowed_edges;
 
 	if (motion->waiting) {
 		steps = 0;
-		if (motion->cam.cycles != cycles) {
+		if (motion->cam.piece.cycles != cycles) {
 			motion->waiting = false;
 			steps = lw_cam_begin(&motion->cam, dd, motion->begin_usteps);
 		}
@@ -36,7 +63,7 @@ int lw_cam_motion_edge(struct lw_cam_motion *motion, uint32_t edges, int dd)
 		const int shift = phase_target_edges > motion->phase_edges ? 1 : -1;
 
 		motion->phase_edges += shift;
-		steps += table_edge(motion, shift);
+		steps += lw_cam_motion_table_edge(motion, shift);
 	}
 
 	motion->owed_usteps += steps;
@@ -53,11 +80,12 @@ int lw_cam_motion_edge(struct lw_cam_motion *motion, uint32_t edges, int dd)
 static struct lw_cam_reading read_once(const volatile struct lw_cam_motion *motion)
 {
 	return (struct lw_cam_reading){
-		.pos_usteps = (int32_t)motion->cam.pos_usteps,
+		.pos_usteps =
+			(int32_t)(motion->cam.point.pos_usteps + (uint32_t)motion->ahead_usteps),
 		.owed_usteps = motion->owed_usteps,
 		.phase_edges = motion->phase_edges,
-		.cycles = motion->cam.cycles,
-		.row = motion->cam.row,
+		.cycles = motion->cam.piece.cycles,
+		.row = motion->cam.piece.row,
 		.waiting = motion->waiting,
 	};
 }

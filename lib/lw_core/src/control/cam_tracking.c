@@ -27,21 +27,24 @@ static void prepare(struct lw_controller *controller, int32_t pos_usteps)
 	struct lw_cam_motion *cam = &controller->motion.cam;
 	const struct lw_cam_table *table = &controller->cam_bank->table;
 	const struct lw_cam_scale scale = lw_cam_params_scale(controller->params);
-	const int64_t net_edges = lw_motion_read(&controller->motion).net_edges;
+	const struct lw_motion_reading reading = lw_motion_read(&controller->motion);
+	const int64_t net_edges = reading.net_edges;
 	const bool relative = controller->params->cam_start == LW_CAM_START_RELATIVE;
 
 	cam->next = NULL;
 	cam->steps_max = steps_max(controller, controller->cam_bank);
-	cam->edges = (uint32_t)net_edges;
+	cam->unfollowed_edges = reading.unfollowed_edges;
 	cam->phase_edges = cam->phase_target_edges;
 	cam->waiting = controller->params->cam_start == LW_CAM_START_NEXT_CYCLE;
 	lw_cam_start(&cam->cam, table, &scale, 0, 0);
-	cam->begin_usteps = (int32_t)cam->cam.pos_usteps;
+	cam->begin_usteps = (int32_t)cam->cam.point.pos_usteps;
 	lw_cam_start(&cam->cam, table, &scale, (relative ? 0 : net_edges) + cam->phase_edges, 0);
-	cam->cam.cycles = 0;
+	lw_cam_count_from_here(&cam->cam);
+	cam->ring.count = 0;
+	lw_cam_motion_prepare(cam);
 	cam->owed_usteps =
 		relative ? 0
-			 : (cam->waiting ? cam->begin_usteps : (int32_t)cam->cam.pos_usteps) -
+			 : (cam->waiting ? cam->begin_usteps : (int32_t)cam->cam.point.pos_usteps) -
 				   pos_usteps;
 }
 
@@ -63,7 +66,7 @@ void lw_cam_hand_over(struct lw_controller *controller)
 	}
 	prepare(controller, pos_usteps);
 	if (controller->params->cam_start == LW_CAM_START_RELATIVE) {
-		shift_usteps = pos_usteps - cam->cam.pos_usteps;
+		shift_usteps = pos_usteps - lw_cam_pos(&cam->cam);
 	}
 	if (lw_cam_bank_check_flanges(controller->cam_bank, &controller->cam_bank->statistics,
 				      controller->params, shift_usteps, &controller->cam_refusal)) {

@@ -621,6 +621,9 @@ void lw_controller_tick(struct lw_controller *controller, uint64_t now_us)
 	}
 
 	lw_motion_count(&controller->motion);
+	if (controller->motion.cam.on) {
+		lw_cam_motion_prepare(&controller->motion.cam);
+	}
 	watch_drum(controller, now_us);
 	lw_drum_speed_tick(&controller->speed, controller->params,
 			   (uint32_t)controller->motion.net_edges,

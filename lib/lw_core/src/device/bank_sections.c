@@ -278,7 +278,7 @@ static void setpoints_store(void *context, const struct lw_point *point, uint16_
 			      (uint32_t)device->active.lock_timeout_s, device->now_us);
 		break;
 	case LW_ADDRESS_CAM_PHASE_EDGES:
-		controller->motion.cam.phase_target_edges = value;
+		lw_cam_motion_shift(&controller->motion.cam, value);
 		break;
 	default:
 		break;

@@ -239,7 +239,7 @@ static int check_joint(const struct lw_device *device, const struct lw_cam_bank 
 	const struct lw_cam_scale scale = lw_cam_params_scale(&device->active);
 	const int32_t begin = motion->cam.cam.table->rows[0].slave;
 	/* Earlier joints are in the offset, which stays as nothing is queued. */
-	const int64_t slaves = motion->cam.cam.offset + begin - bank->table.rows[0].slave;
+	const int64_t slaves = lw_cam_offset(&motion->cam.cam) + begin - bank->table.rows[0].slave;
 	int64_t shift_usteps;
 
 	if (device->active.cam_start != LW_CAM_START_RELATIVE &&

@@ -25,15 +25,20 @@ void lw_motion_init(struct lw_motion *motion, const struct lw_law_window *window
 
 int32_t lw_motion_m(const struct lw_motion *motion)
 {
-	/* A new window changes both; the supervisor cannot ask for two while this reads. */
+	/* A new window changes two of them, a cam two; the supervisor cannot ask for two while this
+	 * reads. */
 	const volatile uint32_t *below_from = &motion->law.below_from;
 	const volatile uint32_t *rel = &motion->law.rel;
+	const volatile int32_t *ahead_usteps = &motion->cam.ahead_usteps;
 	struct lw_law law = {0};
+	int32_t ahead;
 
 	do {
 		law.below_from = *below_from;
+		ahead = *ahead_usteps;
 		law.rel = *rel;
-	} while (law.below_from != *below_from);
+	} while (law.below_from != *below_from || ahead != *ahead_usteps);
+	law.rel += (uint32_t)ahead * LW_USTEP;
 	return lw_law_m(&law);
 }
 
@@ -45,6 +50,7 @@ struct words {
 	uint32_t edges;
 	uint32_t unfollowed_edges;
 	uint32_t steps;
+	int32_t ahead_usteps;
 };
 
 static struct words read_words(const volatile struct lw_motion *motion)
@@ -56,6 +62,7 @@ static struct words read_words(const volatile struct lw_motion *motion)
 		.edges = motion->edges,
 		.unfollowed_edges = motion->unfollowed_edges,
 		.steps = motion->steps,
+		.ahead_usteps = motion->cam.ahead_usteps,
 	};
 }
 
@@ -80,7 +87,11 @@ static int64_t continued(int64_t count, uint32_t low)
 struct lw_motion_reading lw_motion_read(const struct lw_motion *motion)
 {
 	const struct words words = read_twice(motion);
-	const struct lw_law law = {.rel = words.rel, .below_from = words.below_from};
+	const int32_t ahead = words.ahead_usteps;
+	const struct lw_law law = {
+		.rel = words.rel + (uint32_t)ahead * LW_USTEP,
+		.below_from = words.below_from,
+	};
 	const uint32_t followed_edges = words.edges - words.unfollowed_edges;
 
 	return (struct lw_motion_reading){
@@ -89,7 +100,8 @@ struct lw_motion_reading lw_motion_read(const struct lw_motion *motion)
 		.net_edges = continued(motion->net_edges, words.edges),
 		.pattern_edges =
 			continued(motion->followed_edges, followed_edges) - motion->pattern_begin,
-		.steps = words.steps,
+		.steps = words.steps + (uint32_t)(ahead > 0 ? ahead : -ahead),
+		.unfollowed_edges = words.unfollowed_edges,
 	};
 }
 
@@ -114,13 +126,7 @@ static void close_short_way(struct lw_motion *motion)
 {
 	atomic_signal_fence(memory_order_seq_cst);
 	*(volatile uint32_t *)&motion->law.open_span = 0;
-	atomic_signal_fence(memory_order_seq_cst);
-}
-
-void lw_motion_set_source(struct lw_motion *motion, enum lw_edge_source source)
-{
-	motion->source = (uint8_t)source;
-	close_short_way(motion);
+	lw_cam_motion_close(&motion->cam);
 }
 
 void lw_motion_set_position(struct lw_motion *motion, const struct lw_law_window *window, int32_t m,
@@ -327,20 +333,47 @@ static int take_edge(struct lw_motion *motion, int dd)
 	return step;
 }
 
-static int take_cam_edge(struct lw_motion *motion, int dd)
+/** Count steps of a cam, not 0, that are given. */
+LW_EDGE_INLINE void count_steps(struct lw_motion *motion, int steps)
 {
-	const int steps = lw_cam_motion_edge(&motion->cam, motion->edges, dd);
+	motion->steps += (uint32_t)(steps > 0 ? steps : -steps);
+	/* 1 or -1, in two instructions less than to ask. */
+	motion->last_step = -(int32_t)((uint32_t)steps >> 31) | 1;
+}
 
+/** Account for the steps that the cam's short way has added up. */
+LW_EDGE_INLINE void account(struct lw_motion *motion)
+{
+	const int steps = motion->cam.ahead_usteps;
+
+	if (steps != 0) {
+		motion->cam.ahead_usteps = 0;
+		motion->cam.cam.point.pos_usteps += (uint32_t)steps;
+		motion->law.rel += (uint32_t)steps * LW_USTEP;
+		count_steps(motion, steps);
+	}
+}
+
+/** What a cam makes of an edge beside following its table. Apart, for it is long. */
+static __attribute__((noinline)) int take_cam_edge(struct lw_motion *motion, int dd)
+{
+	int steps;
+
+	account(motion);
+	steps = lw_cam_motion_edge(&motion->cam, motion->unfollowed_edges, dd);
+	if (!motion->blocked) {
+		lw_cam_motion_open(&motion->cam, dd);
+	}
 	motion->law.rel += (uint32_t)steps * LW_USTEP;
 	if (is_withheld(motion, steps)) {
 		return 0;
 	}
-	motion->steps += (uint32_t)(steps > 0 ? steps : -steps);
-	motion->last_step = steps > 0 ? 1 : -1;
+	count_steps(motion, steps);
 	return steps;
 }
 
-int lw_motion_long_edge(struct lw_motion *motion, int dd)
+/** An edge that is neither the short way's nor a cam's alone. */
+static __attribute__((noinline)) int take_longest_way(struct lw_motion *motion, int dd)
 {
 	struct lw_law *law = &motion->law;
 	int step;
@@ -359,6 +392,116 @@ int lw_motion_long_edge(struct lw_motion *motion, int dd)
 	return step;
 }
 
+/** An edge into a piece that is not prepared, while the cam's short way is open. */
+static __attribute__((noinline)) int evaluate(struct lw_motion *motion, int dd)
+{
+	int steps;
+
+	account(motion);
+	steps = lw_cam_motion_table_edge(&motion->cam, dd);
+	motion->cam.open = motion->cam.cam.piece.kind * dd;
+	motion->law.rel += (uint32_t)steps * LW_USTEP;
+	if (steps != 0) {
+		count_steps(motion, steps);
+	}
+	return steps;
+}
+
+/** An edge into another piece while the cam's short way is open. */
+LW_EDGE_INLINE int cross(struct lw_motion *motion, int dd)
+{
+	struct lw_cam_motion *cam = &motion->cam;
+	const uint32_t accounted_usteps = cam->cam.point.pos_usteps;
+	const struct lw_cam_table *next = atomic_load_explicit(&cam->next, memory_order_relaxed);
+	const int ahead = cam->ahead_usteps;
+	int steps;
+
+	if (!lw_cam_cross(&cam->cam, dd, next, &cam->ring)) {
+		return evaluate(motion, dd);
+	}
+	/* As account(), which would take the way there and back through `pos_usteps`. */
+	steps = (int)(cam->cam.point.pos_usteps - accounted_usteps);
+	cam->ahead_usteps = 0;
+	cam->open = cam->cam.piece.kind * dd;
+	motion->law.rel += (uint32_t)steps * LW_USTEP;
+	steps -= ahead;
+	if (ahead != 0) {
+		count_steps(motion, ahead);
+	}
+	if (steps != 0) {
+		count_steps(motion, steps);
+	}
+	return steps;
+}
+
+static __attribute__((noinline)) int cross_forward(struct lw_motion *motion)
+{
+	return cross(motion, 1);
+}
+
+static __attribute__((noinline)) int cross_backward(struct lw_motion *motion)
+{
+	return cross(motion, -1);
+}
+
+/** An edge of a cam in a wide piece, or where the master turns back; or the longest way. */
+static __attribute__((noinline)) int take_wide_edge(struct lw_motion *motion, int dd)
+{
+	struct lw_cam_motion *cam = &motion->cam;
+	int kind = cam->open * dd;
+	int steps;
+
+	if (kind == LW_CAM_CLOSED) {
+		return take_longest_way(motion, dd);
+	}
+	if (kind < 0) {
+		account(motion); /* from here on the steps go the other way */
+		cam->open = -cam->open;
+		kind = -kind;
+	}
+	if (!lw_cam_stays(&cam->cam, dd)) {
+		return dd > 0 ? cross_forward(motion) : cross_backward(motion);
+	}
+	steps = lw_cam_inside(&cam->cam, kind, dd);
+	cam->ahead_usteps += steps;
+	return steps;
+}
+
+/** By the cam's short way, or another. */
+LW_EDGE_INLINE int take_long(struct lw_motion *motion, int dd)
+{
+	struct lw_cam_motion *cam = &motion->cam;
+	int steps;
+
+	if (cam->open == dd * (int)LW_CAM_STRAIGHT) {
+		if (!lw_cam_stays(&cam->cam, dd)) {
+			return dd > 0 ? cross_forward(motion) : cross_backward(motion);
+		}
+		steps = lw_cam_inside(&cam->cam, LW_CAM_STRAIGHT, dd);
+	} else if (cam->open == dd * (int)LW_CAM_CURVED) {
+		if (!lw_cam_stays(&cam->cam, dd)) {
+			return dd > 0 ? cross_forward(motion) : cross_backward(motion);
+		}
+		steps = lw_cam_inside(&cam->cam, LW_CAM_CURVED, dd);
+	} else {
+		return take_wide_edge(motion, dd);
+	}
+	if (steps != 0) {
+		cam->ahead_usteps += steps;
+	}
+	return steps;
+}
+
+int lw_motion_long_forward(struct lw_motion *motion)
+{
+	return take_long(motion, 1);
+}
+
+int lw_motion_long_backward(struct lw_motion *motion)
+{
+	return take_long(motion, -1);
+}
+
 /** Is the carriage in a reversal in which timer edges shall stop? */
 static bool stops_here(const struct lw_motion *motion)
 {
@@ -366,6 +509,18 @@ static bool stops_here(const struct lw_motion *motion)
 
 	return (region < 0 && (motion->stop_at_rest & LW_MOTION_PLUS)) ||
 	       (region > 0 && (motion->stop_at_rest & LW_MOTION_MINUS));
+}
+
+void lw_motion_set_source(struct lw_motion *motion, enum lw_edge_source source)
+{
+	if (motion->cam.ahead_usteps != 0) {
+		/* No edge moves the carriage while they are accounted for. */
+		motion->source = LW_EDGE_SOURCE_NONE;
+		close_short_way(motion);
+		account(motion);
+	}
+	motion->source = (uint8_t)source;
+	close_short_way(motion);
 }
 
 int lw_motion_timer_edge(struct lw_motion *motion)

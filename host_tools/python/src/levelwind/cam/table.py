@@ -69,22 +69,43 @@ class _Statistics(ctypes.Structure):
     )
 
 
+class _Numbers(ctypes.Structure):
+    _fields_ = (
+        ("remainder", U32),
+        ("slope", U32),
+        ("whole", I32),
+        ("remainder_high", U32),
+        ("slope_high", U32),
+    )
+
+
+class _Point(ctypes.Structure):
+    _fields_ = (("numbers", _Numbers), ("left", U32), ("pos_usteps", U32))
+
+
+class _Piece(ctypes.Structure):
+    _fields_ = (
+        ("den", I64),
+        ("curve", I64),
+        ("first_at", U32),
+        ("edges", U32),
+        ("cycles", I32),
+        ("row", U16),
+        ("whole_curve", ctypes.c_int8),
+        ("kind", ctypes.c_uint8),
+    )
+
+
 class _State(ctypes.Structure):
     """struct lw_cam."""
 
     _fields_ = (
-        ("remainder", I64),
-        ("den", I64),
-        ("slope", I64),
-        ("curve", I64),
-        ("at", U32),
-        ("piece_begin", U32),
-        ("piece_end", U32),
-        ("stride", U32),
-        ("pos_usteps", I64),
+        ("point", _Point),
+        ("piece", _Piece),
         ("offset", I64),
-        ("row", U16),
-        ("cycles", I32),
+        ("was_pos", I64),
+        ("serial", U32),
+        ("stride", U32),
         ("table", ctypes.c_void_p),
         ("scale", _Scale),
     )
@@ -236,6 +257,9 @@ def _library() -> ctypes.CDLL:
             "struct lw_cam_limits": _Limits,
             "struct lw_cam_refusal": _Refusal,
             "struct lw_cam_statistics": _Statistics,
+            "struct lw_cam_numbers": _Numbers,
+            "struct lw_cam_point": _Point,
+            "struct lw_cam_piece": _Piece,
             "struct lw_cam": _State,
             "struct lw_native_cam_result": _Result,
         },
@@ -318,9 +342,11 @@ class Cam:
         return values, np.ctypeslib.as_array(trace)[: result.trace_count], stride
 
     def state(self) -> dict[str, int]:
-        """The core's state, but for where its table is."""
+        """What of the core's state is a function of net edges."""
+        point, piece = self._state.point, self._state.piece
         return {
-            name: getattr(self._state, name)
-            for name, _ in _State._fields_
-            if name not in ("table", "scale")
+            name: getattr(part, name)
+            for part in (point.numbers, point, piece)
+            for name, *_ in part._fields_
+            if name != "numbers"
         }

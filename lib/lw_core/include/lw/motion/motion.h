@@ -13,8 +13,9 @@
  *
  * A drum edge costs little because all that is unusual leaves the short way by one comparison:
  * whoever asks for something writes 0 to `law.open_span`, and then every edge goes the long way,
- * lw_motion_long_edge(), which restores it when nothing is left to do. Nothing that asks may
- * interrupt the edge interrupts. Edges that a cam takes go the long way too.
+ * lw_motion_long_forward() or lw_motion_long_backward(), which restore it when nothing is left to
+ * do. Nothing that asks may interrupt the edge interrupts. Behind that comparison the edges of a
+ * cam have a short way of their own, closed by `cam.open` in the same places (lw/cam/cam_motion.h).
  */
 #ifndef LW_MOTION_H
 #define LW_MOTION_H
@@ -58,7 +59,8 @@ enum lw_motion_side_bit {
 struct lw_motion {
 	/** Written by the edge interrupt; `law.turned` is cleared by lw_motion_take_turned(). */
 	struct lw_law law;
-	uint32_t steps; /**< step pulses given; read by the supervisor */
+	/** Step pulses given, `cam.ahead_usteps` not among them; read by the supervisor. */
+	uint32_t steps;
 	/** Direction of the last of them, +1 or -1; 0: none yet. Read by the supervisor. */
 	int32_t last_step;
 	/** Odometer, net drum edges modulo 2^32. Written by who decodes, before the edge is taken:
@@ -98,7 +100,11 @@ struct lw_motion {
 /** Direction of the carriage: that of the last step, 0 at the far point of a reversal. */
 static inline int lw_motion_direction(const struct lw_motion *motion)
 {
-	return motion->law.u == 0 ? 0 : (int)motion->last_step;
+	const int32_t ahead_usteps = motion->cam.ahead_usteps;
+
+	return ahead_usteps != 0    ? (ahead_usteps > 0 ? 1 : -1)
+	       : motion->law.u == 0 ? 0
+				    : (int)motion->last_step;
 }
 
 /** Position, Q16.16 microsteps. For all that the edge interrupt may interrupt. */
@@ -117,6 +123,8 @@ struct lw_motion_reading {
 	int64_t net_edges;     /**< odometer: all drum edges */
 	int64_t pattern_edges; /**< drum edges followed since the last hand-over, net */
 	uint32_t steps;        /**< step pulses given */
+	/** Drum edges that did not move the carriage, net, modulo 2^32. */
+	uint32_t unfollowed_edges;
 };
 
 /**
@@ -173,8 +181,11 @@ uint8_t lw_motion_take_withheld(struct lw_motion *motion);
  */
 bool lw_motion_take_turned(struct lw_motion *motion, enum lw_motion_side_bit side_bit);
 
-/** Take a drum edge whatever there is to do, as lw_motion_edge(). */
-int lw_motion_long_edge(struct lw_motion *motion, int dd);
+/** Take a forward drum edge whatever there is to do, as lw_motion_edge(). */
+int lw_motion_long_forward(struct lw_motion *motion);
+
+/** Take a backward drum edge, likewise. Two, so that a cam's edge need not ask which it is. */
+int lw_motion_long_backward(struct lw_motion *motion);
 
 /**
  * Take one drum edge that `edges` has already counted. For the encoder interrupt.
@@ -187,7 +198,7 @@ LW_EDGE_INLINE int lw_motion_edge(struct lw_motion *motion, int dd)
 	const int step = lw_law_short_edge(&motion->law, motion->law.open_span, dd);
 
 	if (step == LW_LAW_CLOSED) {
-		return lw_motion_long_edge(motion, dd);
+		return dd > 0 ? lw_motion_long_forward(motion) : lw_motion_long_backward(motion);
 	}
 	if (step != 0) {
 		motion->steps++;
