@@ -597,7 +597,7 @@ static const struct levelwind_value flags_2_values[] = {
 	},
 	{
 		12, "not_accepted",
-		"The active set is not the one that somebody has accepted, or none ever was: `levelwind commission` checks a winch and signs its set. No launch is refused for it",
+		"Nobody has accepted the parameter set that is active (levelwind commission). No launch is refused for it",
 	},
 };
 

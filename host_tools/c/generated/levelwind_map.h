@@ -703,8 +703,8 @@ enum levelwind_flag {
 	 */
 	LEVELWIND_FLAG_REACQUIRED = 43,
 	/**
-	 * The active set is not the one that somebody has accepted, or none ever was: `levelwind
-	 * commission` checks a winch and signs its set. No launch is refused for it
+	 * Nobody has accepted the parameter set that is active (levelwind commission). No launch is
+	 * refused for it
 	 */
 	LEVELWIND_FLAG_NOT_ACCEPTED = 44,
 };

@@ -1022,7 +1022,7 @@ class Flag(MapEnum):
     NOT_ACCEPTED = (
         44,
         "not_accepted",
-        "The active set is not the one that somebody has accepted, or none ever was: `levelwind commission` checks a winch and signs its set. No launch is refused for it",
+        "Nobody has accepted the parameter set that is active (levelwind commission). No launch is refused for it",
     )
 
 
@@ -1664,7 +1664,7 @@ POINTS: dict[str, Point] = {
             address=44,
             space="discrete",
             type="bit",
-            text="The active set is not the one that somebody has accepted, or none ever was: `levelwind commission` checks a winch and signs its set. No launch is refused for it",
+            text="Nobody has accepted the parameter set that is active (levelwind commission). No launch is refused for it",
             block="discretes",
         ),
         Point(

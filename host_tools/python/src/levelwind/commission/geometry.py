@@ -132,7 +132,10 @@ def _both_ways(bench: Bench, result: Result) -> tuple[float, float]:
 
 
 def _to_switch(bench: Bench, direction: int) -> int:
-    """Jog until that side's switch ends it; the way, um."""
+    """Jog until that side's switch ends it; the way by its steps, um.
+
+    Not by the position: a slow line lets a jog end, and the next one counts from 0 again.
+    """
     side, other = ("plus", "minus") if direction > 0 else ("minus", "plus")
     mine, theirs = Flag[f"SWITCH_{side.upper()}"], Flag[f"SWITCH_{other.upper()}"]
     beyond = Flag[f"OVERTRAVEL_{side.upper()}"]
@@ -149,6 +152,7 @@ def _to_switch(bench: Bench, direction: int) -> int:
         return bool(stopped_by) or flag(live, mine)
 
     travel_mm = bench.active()["travel_um"] / 1000
+    before = bench.device.value("steps")
     try:
         live = bench.jog(direction, 1.2 * travel_mm / CALM_MM_PER_S, end)
     except RefusedError as refused:
@@ -174,7 +178,8 @@ def _to_switch(bench: Bench, direction: int) -> int:
             f"No {side} switch within {travel_mm:.0f} mm.",
             "Is the carriage free, does the stepper turn the screw, does the coupling hold?",
         )
-    return abs(live["position_um"])
+    steps = (bench.device.value("steps") - before) & 0xFFFFFFFF
+    return round(steps * bench.um_per_ustep())
 
 
 def _hysteresis(bench: Bench) -> float:
