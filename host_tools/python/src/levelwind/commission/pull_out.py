@@ -112,8 +112,8 @@ def run(bench: Bench, result: Result) -> None:
             "pull_out.weak",
             f"The stepper falls out of step at {loses:.0f} edges/s; {told['rope_m_per_s']:g} m/s "
             f"of rope are {wanted:.0f}, and must stay below {TRIP_PART_MAX * loses:.0f}.",
-            "More current or supply voltage, less friction; more overshoot, or a smaller pitch: "
-            "then it need not run so fast. Step 5 asks for both.",
+            "A coupling that slips; else more current or supply voltage, less friction; more "
+            "overshoot, or a smaller pitch: then it need not run so fast. Step 5 asks for both.",
         )
     if loses:
         trip = max(TRIP_PART * loses, min(TRIP_PART_MAX * loses, REACH * wanted))

@@ -23,6 +23,7 @@ DRIFT_UM = 150.0  # over all indexings
 ROUNDING_USTEPS = 3.5  # of an indexing, by which its steps are not known
 TOLERANCE_SIGMAS, TOLERANCE_MIN_UM = 8.0, 300
 DELAY_MIN_US = 100
+STRAIGHT_UM = 150.0
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,15 @@ def run(bench: Bench, result: Result) -> None:
     tolerance = round(TOLERANCE_MIN_UM + TOLERANCE_SIGMAS * worst_um)
     values["switch_tolerance_um"] = max(10, min(tolerance, round(0.3 * room_um)))
     values["span_tolerance_um"] = tolerance
-    bench.apply(values)
+    try:
+        bench.apply(values)
+    except RefusedError as refused:
+        raise wrong(
+            "repeat.delay",
+            f"The switches tell {values['switch_delay_us']} us late, more than fits: {refused}",
+            "A slow input filter or relay before the controller, or a coupling that slips at the "
+            "higher rates. More room between a switch and its reversal point allows more.",
+        ) from None
     last = bench.index("repeat")
     result.measured["with these values the other switch is off by, um"] = last.span_um
     result.proposed.update(values)
@@ -167,6 +176,14 @@ def _delays(bench: Bench, result: Result) -> dict[str, int]:
     except RefusedError as refused:
         raise bench.fault("repeat", refused) from None
     fitted = switch_delay.fit(samples)
+    if fitted.residual_um > STRAIGHT_UM:
+        raise wrong(
+            "repeat.speed",
+            "What the switches tell does not grow straight with the speed: "
+            f"{fitted.residual_um:.0f} um off at worst.",
+            "At the higher rates a coupling slips, or the motor loses steps: tighten the coupling, "
+            "more current.",
+        )
     delay_us = switch_delay.proposal_us(in_force_us, fitted)
     delay_us = delay_us if delay_us >= DELAY_MIN_US else 0
     result.series["speed_mm_per_s"] = [round(s.speed_um_per_s / 1000, 2) for s in samples]

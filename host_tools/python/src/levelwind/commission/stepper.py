@@ -14,6 +14,7 @@ RATES = (400, 2000, 10_000, 50_000)
 """Edges per second, from nearly nothing on: how far a step goes is not known yet."""
 JOG_S = 1.0
 SEEN_MM = 1.0
+TAKE_UP_S = 0.2
 FAR_MM = 25.0
 """A way that a ruler reads to a percent."""
 RULER_PART = 0.03
@@ -58,6 +59,8 @@ def run(bench: Bench, result: Result) -> None:
     rate = bench.rate_for(CALM_MM_PER_S)
     seconds = FAR_MM / bench.speed_mm_per_s(rate)
     with bench.for_now({"jog_rate_edges_per_s": rate}):
+        bench.human.say("    A short jog toward minus first: it takes up the play of the screw.")
+        bench.jog(-1, TAKE_UP_S)
         steps, way_mm = _measured(bench, -1, seconds, "back, toward minus")
     if way_mm >= 0:
         raise wrong(
