@@ -15,12 +15,11 @@ from levelwind.core.native import find
 TESTS = Path(__file__).parent.parent
 TOP_EDGES_PER_S = 48_000  # 40 m/s of rope
 LAW_CASES = ("sweep", "reversal", "direction_change", "cam_linear", "cam_trapezoid")
-LAUNCHES = 2  # seeds of the campaign
+SEED = 22  # of the campaign: 11 s, 9 of them tracking, 337,000 edges
 PLAY = """
 from campaign.launch import play
 from campaign.scenario import scenario
-for seed in {}:
-    play(scenario(seed))
+play(scenario({}))
 """
 
 
@@ -77,12 +76,11 @@ def second() -> Figure:
 
 def launch() -> Figure:
     """A launch of the campaign, judged."""
-    piece = f"range(1, {1 + LAUNCHES})"
     counted, _ = _callgrind(
-        [sys.executable, "-c", PLAY.format(piece)], "--toggle-collect=lw_world_run"
+        [sys.executable, "-c", PLAY.format(SEED)], "--toggle-collect=lw_world_run"
     )
-    options = f"{os.uname().machine}, callgrind, mean of seeds 1 to {LAUNCHES}"
-    values = [_total(counted) / 1e6 / LAUNCHES]
+    options = f"{os.uname().machine}, callgrind, seed {SEED}"
+    values = [_total(counted) / 1e6]
     return figure(
         "a launch of the campaign",
         "campaign",
