@@ -45,6 +45,7 @@ RIGHT: dict[str, dict[str, float]] = {
     "off the middle": sides(60, -72.5, 80, 84),
     "narrow": sides(25, -25, 33, 36),
     "late switches": {"switch_late_ms": 4, "contact_travel_ms": 3, "bounce_ms": 8},
+    "some play": {"backlash_mm": 0.15},
     "half steps": {LEAD: 4, USTEPS: 400, **sides(45, -45, 53, 56)},
     "everything": {
         LEAD: 32,
@@ -84,6 +85,12 @@ WRONG: dict[str, tuple[dict[str, float], dict[str, object], str]] = {
     "motor without force": ({"holding_acceleration_mm_per_s2": 300}, {}, "stepper.still"),
     "weak motor": ({"holding_acceleration_mm_per_s2": 5000}, {}, "pull_out.weak"),
     "slow motor": ({"top_speed_mm_per_s": 180}, {}, "pull_out.weak"),
+    "plus switch scatters": ({"switch_plus_scatter_mm": 0.22}, {}, "repeat.plus_loose"),
+    "minus switch scatters": ({"switch_minus_scatter_mm": 0.22}, {}, "repeat.minus_loose"),
+    "plus switch wanders": ({"switch_plus_drift_mm": 0.06}, {}, "repeat.plus_drift"),
+    "minus switch wanders": ({"switch_minus_drift_mm": 0.06}, {}, "repeat.minus_drift"),
+    "coupling slips when it is fast": ({"coupling_grip_mm_per_s2": 3000}, {}, "pull_out.weak"),
+    "coupling slips": ({"coupling_grip_mm_per_s2": 700}, {}, "geometry.index_span"),
     "friction": ({"friction_mm_per_s2": 15_000}, {}, "pull_out.weak"),
 }  # fmt: skip
 
