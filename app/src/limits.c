@@ -21,7 +21,7 @@ K_MSGQ_DEFINE(changes, sizeof(struct change), CHANGES_MAX, 8);
 /* A change found no room, or came before the interrupts. Set by them, cleared by the thread. */
 static atomic_t changes_lost = ATOMIC_INIT(1);
 
-static K_THREAD_STACK_DEFINE(stack, 512);
+static K_THREAD_STACK_DEFINE(stack, 384);
 static struct k_thread thread;
 
 static const struct device *const switches[] = {

@@ -17,7 +17,7 @@ LOG_MODULE_DECLARE(levelwind);
 
 static const struct device *const uart = DEVICE_DT_GET(DT_PHANDLE(APP_NODE, modbus_uart));
 
-static K_THREAD_STACK_DEFINE(stack, 1536);
+static K_THREAD_STACK_DEFINE(stack, 1600);
 static struct k_thread thread;
 
 /*

@@ -58,7 +58,7 @@ static uint32_t common_divisor(uint32_t a, uint32_t b)
 static void put_remainder(struct lw_cam_point *point, int64_t remainder)
 {
 	point->numbers.remainder = (uint32_t)remainder;
-	point->numbers.remainder_high = (uint32_t)((uint64_t)remainder / 0x100000000);
+	point->numbers.remainder_high = (uint32_t)((uint64_t)remainder / 0x100000000U);
 }
 
 /**
@@ -131,7 +131,7 @@ static int64_t enter_piece(struct lw_cam *cam, uint32_t at_ticks)
 								      : LW_CAM_STRAIGHT;
 	cam->point.numbers.whole = take_whole(&slope, den);
 	cam->point.numbers.slope = (uint32_t)slope;
-	cam->point.numbers.slope_high = (uint32_t)((uint64_t)slope / 0x100000000);
+	cam->point.numbers.slope_high = (uint32_t)((uint64_t)slope / 0x100000000U);
 	cam->point.left = left;
 	return remainder + begin * scale;
 }

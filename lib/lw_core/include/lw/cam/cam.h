@@ -93,10 +93,12 @@ struct lw_cam_ring {
 	volatile uint32_t count;
 	struct lw_cam_slot {
 		struct lw_cam_piece piece;
+		/** At the first place of the piece. */
 		struct lw_cam_end {
 			struct lw_cam_numbers numbers;
 			uint32_t pos_usteps; /**< lower half */
-		} first, last; /**< at the first place of the piece, at the last one */
+		} first;
+		struct lw_cam_end last; /**< at the last one */
 	} slots[LW_CAM_RING_SLOTS];
 };
 
@@ -141,7 +143,7 @@ void lw_cam_ring_fill(struct lw_cam_ring *ring, const struct lw_cam *cam);
 /** A numerator of its halves. */
 LW_EDGE_INLINE int64_t lw_cam_numerator(uint32_t high, uint32_t low)
 {
-	return (int64_t)high * 0x100000000 + low;
+	return (int64_t)high * 4294967296 + low;
 }
 
 /** Take one edge inside of a piece with numerators of 64 bit. As lw_cam_inside(). */
@@ -184,9 +186,9 @@ LW_EDGE_INLINE int lw_cam_inside_wide(struct lw_cam *cam, int dd)
 		}
 	}
 	point->numbers.remainder = (uint32_t)remainder;
-	point->numbers.remainder_high = (uint32_t)((uint64_t)remainder / 0x100000000);
+	point->numbers.remainder_high = (uint32_t)((uint64_t)remainder / 0x100000000U);
 	point->numbers.slope = (uint32_t)slope;
-	point->numbers.slope_high = (uint32_t)((uint64_t)slope / 0x100000000);
+	point->numbers.slope_high = (uint32_t)((uint64_t)slope / 0x100000000U);
 	point->numbers.whole = whole;
 	return steps;
 }
