@@ -321,16 +321,17 @@ function hold(button) {
   set("answer", "");
   say();
   jogging = { button, timer: setInterval(say, JOG_EVERY_MS), topPx: button.getBoundingClientRect().top, shiftPx: 0 };
-  requestAnimationFrame(keepInPlace);
 }
 
-// What appears above a held key must not push it away from under the finger.
-function keepInPlace() {
+// What appears above a held key must not push it away from under the finger: before the browser
+// looks what is under the pointer now.
+new MutationObserver(() => {
   if (!jogging) return;
-  jogging.shiftPx += jogging.topPx - jogging.button.getBoundingClientRect().top;
+  const movedPx = jogging.button.getBoundingClientRect().top - jogging.topPx;
+  if (Math.abs(movedPx) < 0.1) return;
+  jogging.shiftPx -= movedPx;
   jogging.button.style.translate = `0 ${jogging.shiftPx}px`;
-  requestAnimationFrame(keepInPlace);
-}
+}).observe(document.body, { subtree: true, childList: true, characterData: true, attributes: true });
 
 function letGo() {
   if (!jogging) return;
