@@ -83,6 +83,9 @@ ARGUMENTS = {
     "cam discard": "",
     "cam download": "{out}.csv",
     "serve": "--simulator --listen 127.0.0.1:0",
+    "commission": "--resume {commissioning} --answers {stop}",
+    "report verify": "{report}",
+    "report write": "{commissioning}",
     "launches list": "--record {record}",
     "launches show": "1 --record {record} --plot {out}.png",
     "launches export": "1 --record {record}",
@@ -97,8 +100,9 @@ FIRST = {
     "cam discard": "cam upload {table}",
     "cam download": "cam activate {table}",
 }
-FAILS = {"lock", "reacquire"}  # there is no code; the drum rests
-SILENT = {"lock", "reacquire"}  # on standard output
+# There is no code; the drum rests; somebody stops it; nobody has accepted it.
+FAILS = {"lock", "reacquire", "commission", "report verify"}
+SILENT = {"lock", "reacquire", "report verify"}  # on standard output
 # What they print is the same in every run, digits included.
 STEADY = {
     *("identify", "get", "map", "plan", "lay", "rope", "diff", "cam check", "replay", "trim"),
@@ -130,6 +134,23 @@ def record_a_launch(record: Path) -> None:
         server.wait()
 
 
+def begin_commissioning(folder: Path, port: str) -> dict[str, str]:
+    """The first step, its report, and answers that stop before the second one."""
+    stop = folder / "stop.yaml"
+    stop.write_text(
+        "levelwind_answers: 1\nanswers: {identify.from_factory: n, contacts.begin: s}\n"
+    )
+    done = subprocess.run(
+        [*LEVELWIND, "commission", "--report", folder / "report", "--answers", stop],
+        env=environment(port), capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert "The carriage stands." in done.stdout, done.stdout + done.stderr
+    kept = folder / "report" / "commissioning.json"
+    subprocess.run([*LEVELWIND, "report", "write", kept], env=environment(port), check=True)
+    report = folder / "report" / "report.json"
+    return {"stop": str(stop), "commissioning": str(kept), "report": str(report)}
+
+
 @pytest.fixture(scope="module")
 def files(port: str, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     """What the commands read."""
@@ -156,6 +177,7 @@ def files(port: str, tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]
         "described": str(described),
         "backup": str(backup),
         "record": str(record),
+        **begin_commissioning(folder, port),
     }
 
 
@@ -257,7 +279,7 @@ def test_a_full_disk_is_one_line(command: str, line: Line, port: str) -> None:
     said = done.stderr.splitlines()
     if command not in SILENT:
         assert "cannot be written: No space left on device" in said[-1]
-    assert all(text.startswith(("levelwind: ", "lw_sim: ")) for text in said), said
+    assert all(text.startswith(("levelwind: ", "lw_sim: ", "- ")) for text in said), said
 
 
 @pytest.mark.parametrize("command", SERVERS)
