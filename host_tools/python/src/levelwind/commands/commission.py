@@ -1,21 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands: guided commissioning, and its report."""
 
-import contextlib
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from levelwind.commission import guide, report, session
+from levelwind.commission import dialogue, report, session
 from levelwind.commission.bench import Bench
-from levelwind.commission.human import Answers, StoppedError, Terminal
-from levelwind.errors import NoAnswerError, ToolError, UnknownOutcomeError
+from levelwind.commission.human import Answers, Human, StoppedError, Terminal
+from levelwind.errors import ToolError
 from levelwind.line.connection import with_device
 from levelwind.line.device import Device
 from levelwind.show.output import console
-
-STATE = "commissioning.json"
 
 app = typer.Typer(no_args_is_help=True, help="The report of a commissioning.")
 
@@ -34,43 +31,25 @@ def commission(
     ] = None,
 ) -> None:
     """Set a winch up by a dialogue that measures, proposes, explains and signs."""
-    human = Answers(answers, device) if answers is not None else Terminal()
+    human: Human = Answers(answers, device) if answers is not None else Terminal()
     if resume is not None:
         held = session.load(resume)
-        folder = resume.parent
     else:
-        path = folder / STATE
+        path = folder / dialogue.STATE
         if path.exists():
             raise ToolError(
                 f"{path} is there: go on with it by --resume {path}, or give another --report."
             )
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise ToolError(f"{folder} cannot be made: {error.strerror}.") from error
-        held = session.Session(path, begun=session.now())
-        held.save()
-    bench = Bench(device, human, held)
+        held = dialogue.begin(folder)
     try:
-        guide.go_on(bench)
+        paths = dialogue.run(Bench(device, human, held))
     except (StoppedError, KeyboardInterrupt) as stopped:
-        bench.rest()
         word = "Stopped" if isinstance(stopped, KeyboardInterrupt) else str(stopped).rstrip(".")
-        console.print(f"\n{word}. The carriage stands. {_go_on(held)}")
+        console.print(f"\n{word}. The carriage stands. {human.to_go_on(held.path)}")
         raise typer.Exit(130 if isinstance(stopped, KeyboardInterrupt) else 1) from None
-    except (NoAnswerError, UnknownOutcomeError) as lost:
-        with contextlib.suppress(ToolError):
-            bench.rest()
-        raise ToolError(
-            f"{lost}\nA jog ends by itself, and an indexing at its switches. {_go_on(held)}"
-        ) from None
-    for path in report.write(held, folder):
+    for path in paths:
         console.print(str(path))
     console.print(f"Accepted by {held.accepted_by}. The winch is indexed and follows the drum.")
-
-
-def _go_on(held: session.Session) -> str:
-    return f"Go on with: levelwind commission --resume {held.path}"
 
 
 @app.command()

@@ -51,6 +51,14 @@ def serve(
     set_pin: Annotated[
         bool, typer.Option("--set-pin", help="Ask for a new PIN first, and keep it, hashed.")
     ] = False,
+    commission: Annotated[
+        Path | None,
+        typer.Option(
+            help="The page leads the guided commissioning, too (doc/commissioning.md): report "
+            "and state are there.",
+            metavar="FOLDER",
+        ),
+    ] = None,
     pin_file: Annotated[Path | None, typer.Option(help="Where the PIN is kept.")] = None,
     name: Annotated[
         list[str] | None,
@@ -77,6 +85,13 @@ def serve(
         pin.set(typer.prompt("New PIN", hide_input=True, confirmation_prompt=True))
     if allow_commands and not pin.exists():
         raise ToolError(f"--allow-commands: there is no PIN in {pin.path}. Set one: --set-pin.")
+    if commission and not allow_commands:
+        raise ToolError("--commission: its steps move the carriage; give --allow-commands, too.")
+    if commission and simulate:
+        raise ToolError(
+            "--commission: the demonstration drives this winch. Give the --port of a `levelwind "
+            "sim` in another terminal."
+        )
     if machine_file and not simulate:
         raise ToolError("--machine: a real winch is as it is; give --simulator, too.")
     winch = machine.read(machine_file) if machine_file else None
@@ -95,6 +110,7 @@ def serve(
             pin if allow_commands else None,
             tuple(gateway.networks(write_from or [])),
             frozenset(name or []),
+            commission=commission,
             demonstrate=simulate,
             parameters=winch.parameters() if winch else None,
         )

@@ -21,6 +21,8 @@ from levelwind.errors import ToolError
 from levelwind.line.parameter_sets import replace_set
 from levelwind.map_table import Command
 
+CARRIAGE = "THE CARRIAGE"
+
 
 @dataclass(frozen=True)
 class Step:
@@ -64,7 +66,7 @@ STEPS = (
         "stepper",
         "Stepper and screw",
         "Small jogs to a mark that you measure: direction, microsteps, lead.",
-        "THE CARRIAGE, a few millimetres, then 25 mm, from the middle. Ctrl-C stops it.",
+        "THE CARRIAGE, a few millimetres, then 25 mm, from the middle.",
         "Repeat the step; its values replace those before.",
         stepper.run,
     ),
@@ -73,7 +75,7 @@ STEPS = (
         "Geometry",
         "Runs to both switches, measures the way between, proposes where reversals and flanges "
         "are.",
-        "THE CARRIAGE, to both switches, slowly; then it indexes. Ctrl-C stops it.",
+        "THE CARRIAGE, to both switches, slowly; then it indexes.",
         "Repeat the step; its values replace those before.",
         geometry.run,
     ),
@@ -81,7 +83,7 @@ STEPS = (
         "repeat",
         "Repeatability",
         "Indexes again and again, then at several rates: scatter, drift, the switches' delay.",
-        "THE CARRIAGE, between both switches. Ctrl-C stops it.",
+        "THE CARRIAGE, between both switches.",
         "Repeat the step; its values replace those before.",
         repeat.run,
     ),
@@ -99,7 +101,7 @@ STEPS = (
         "line",
         "Line",
         "A thousand requests while the stepper runs: latency, errors.",
-        "THE CARRIAGE, between both switches. Ctrl-C stops it.",
+        "THE CARRIAGE, between both switches.",
         "Nothing is changed.",
         line.run,
         may_be_left_out=True,
@@ -113,6 +115,12 @@ STEPS = (
         others.first_rope,
     ),
 )
+
+
+def moves(step: Step, stop_key: str) -> str:
+    """What will move in a step, and what stops it."""
+    stops = f" {stop_key} stops it." if step.moves.startswith(CARRIAGE) else ""
+    return step.moves + stops
 
 
 def go_on(bench: Bench) -> None:
@@ -150,7 +158,7 @@ def _step(bench: Bench, number: int, step: Step) -> None:
     human.say(
         f"\n{number} of {len(STEPS)}  {step.title.upper()}\n"
         f"  What it does    {step.does}\n"
-        f"  What will move  {step.moves}\n"
+        f"  What will move  {moves(step, human.stop_key)}\n"
         f"  The way back    {step.back}"
     )
     choices = ("g", "l", "s") if step.may_be_left_out else ("g", "s")
@@ -182,7 +190,7 @@ def _step(bench: Bench, number: int, step: Step) -> None:
                             ("r", "s"), "s") == "s":  # fmt: skip
                 raise ToolError(
                     f"Step {number}, {step.title}: {finding.what}\n{finding.remedy}\n"
-                    f"What is done so far is kept: `levelwind commission --resume {session.path}`."
+                    f"What is done so far is kept. {human.to_go_on(session.path)}"
                 ) from None
             continue
         result.done = True

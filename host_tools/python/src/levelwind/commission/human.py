@@ -18,6 +18,8 @@ from levelwind.line.points import lookup, parse_value
 from levelwind.map_table import BenchCommand, Flag
 from levelwind.show.output import console
 
+PATIENCE_S = 60.0
+RESUME = "Go on with: levelwind commission --resume {}"
 TURN_RPM = 30.0
 TURN_RAMP_S = 0.5
 REST_LIMIT_S = 30.0
@@ -34,6 +36,11 @@ class Human(Protocol):
 
     patience_s: float
     """How long something that was asked for may take to be seen."""
+    stop_key: str
+    """What stops the carriage at once, as this person knows it."""
+
+    def to_go_on(self, path: Path) -> str:
+        """How to go on with a commissioning that has ended; a sentence."""
 
     def say(self, text: str) -> None:
         """Tell."""
@@ -57,7 +64,12 @@ class Human(Protocol):
 class Terminal:
     """A person at the terminal. Enter takes what stands in brackets; q goes on another time."""
 
-    patience_s = 60.0
+    patience_s = PATIENCE_S
+    stop_key = "Ctrl-C"
+
+    def to_go_on(self, path: Path) -> str:
+        """By the same command."""
+        return RESUME.format(path)
 
     def say(self, text: str) -> None:
         """As it is."""
@@ -117,8 +129,12 @@ class Heard:
 
     def __init__(self, human: Human) -> None:
         self._human = human
-        self.patience_s = human.patience_s
+        self.patience_s, self.stop_key = human.patience_s, human.stop_key
         self.told: dict[str, str] = {}
+
+    def to_go_on(self, path: Path) -> str:
+        """As it is."""
+        return self._human.to_go_on(path)
 
     def say(self, text: str) -> None:
         """As it is."""
@@ -160,6 +176,7 @@ class Answers:
     `mark` and `way_mm` put a ruler on one of them (`bench_carriage_um`).
     """
 
+    stop_key = "Ctrl-C"
     HANDS = ("bench", "place_mm", "turn", "mark", "way_mm", "answer")
 
     def __init__(self, path: Path, device: Device) -> None:
@@ -173,6 +190,10 @@ class Answers:
         self.patience_s = float(document.get("patience_s", 3.0))
         self._path, self._answers, self._device = path, answers, device
         self._marked_um = 0
+
+    def to_go_on(self, path: Path) -> str:
+        """By the same command."""
+        return RESUME.format(path)
 
     def say(self, text: str) -> None:
         """As it is: CI keeps it."""

@@ -39,6 +39,8 @@ class Setting:
     """None: nobody may give commands."""
     write_from: tuple[Network, ...] = ()
     names: frozenset[str] = frozenset()
+    commission: Path | None = None
+    """The folder of a commissioning; None: the page offers none."""
     demonstrate: bool = False
     parameters: Mapping[str, int] | None = None
     """The demonstration's, where its machine is not the default one."""
@@ -121,6 +123,12 @@ def run(setting: Setting, ready: Callable[[str], None], warn: Callable[[str], No
             served.recorder = Recorder(setting.record, watcher, served.growth, setting.keep)
             stack.callback(served.recorder.close)
             served.recorder.start()
+        if setting.commission is not None:
+            from levelwind.serve.commissioning import (  # noqa: PLC0415 - brings matplotlib
+                Commissioning,
+            )
+
+            served.commissioning = Commissioning(owner, setting.commission)
         shown = f"[{host}]" if ":" in host else host
         url = f"http://{shown}:{listening.getsockname()[1]}/"
 

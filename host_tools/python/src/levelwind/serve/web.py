@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
@@ -30,13 +30,24 @@ from levelwind.serve.view import Seen, log_rows, view
 from levelwind.serve.watcher import Watcher
 from levelwind.show.status import status_json
 
+if TYPE_CHECKING:
+    from levelwind.serve.commissioning import Commissioning
+
 PAGE = Path(__file__).parent / "page"
 SEND_EVERY_S = 0.1
 LAY_EVERY_S = 2.0
 TREND_EVERY_S = 0.2
 TREND_S = 300
+OLD_S = 1.0
 SOCKETS_MAX = 32
 COOKIE = "levelwind"
+BESIDE_COMMISSIONING = ("stop", "trim_early", "trim_late")
+"""What else the operator's page may do while a commissioning is under way: its last step trims."""
+REPORT_POLICY = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; frame-ancestors 'none'; "
+    "base-uri 'none'; form-action 'none'"
+)
+"""The report has its pictures and its style within."""
 
 
 @dataclass
@@ -48,6 +59,7 @@ class Served:
     recorder: Recorder | None
     sessions: Sessions | None
     """None: nobody may give commands."""
+    commissioning: "Commissioning | None" = None
     gateway_clients: Callable[[], int] = lambda: 0
     loopback: bool = True
     names: frozenset[str] = frozenset()
@@ -109,7 +121,7 @@ class Page:
             direction = int(json.loads(text)["jog"])
         except (ValueError, KeyError, TypeError):
             return
-        if self.jog is None or not self._may_command(socket):
+        if self.jog is None or not self._may_command(socket) or self._is_commissioned():
             return
         if direction in (-1, 1):
             self.jog.hold(socket, direction)
@@ -135,6 +147,7 @@ class Page:
                 "jog_problem": self.jog.problem if self.jog else "",
                 "recorder": served.recorder.state() if served.recorder else None,
                 "clients": served.gateway_clients(),
+                "commissioning": self._commissioning_word(),
             }
             if seen is not None:
                 document["view"] = view(seen)
@@ -230,6 +243,10 @@ class Page:
             return _refused("Give the PIN first.")
         given = await _json(request)
         name = str(given.get("name"))
+        if self._is_commissioned() and name not in BESIDE_COMMISSIONING:
+            return _refused("A commissioning is under way: only Stop carriage and trims.", 409)
+        if name == "stop" and self.served.commissioning is not None:
+            self.served.commissioning.stop("Stop carriage was pressed.")
         if name == "set_rope":
             return await self._told(lambda: self.operator.set_rope(given.get("metres")))
         if name == "stage":
@@ -238,6 +255,89 @@ class Page:
                 lambda: self.operator.stage(values if isinstance(values, dict) else {})
             )
         return await self._told(lambda: self.operator.act(name))
+
+    # ---- commissioning -------------------------------------------------------------------------
+
+    def _is_commissioned(self) -> bool:
+        return self.served.commissioning is not None and self.served.commissioning.is_running
+
+    def _commissioning_word(self) -> str | None:
+        """For the operator's page; None: none is offered."""
+        if self.served.commissioning is None:
+            return None
+        return "Commissioning is under way" if self._is_commissioned() else "Commissioning"
+
+    async def commission(self, socket: WebSocket) -> None:
+        """The dialogue: what it says and asks; from the page the beginning, and answers."""
+        commissioning = self.served.commissioning
+        if commissioning is None or len(self._sockets) >= SOCKETS_MAX:
+            await socket.close(1013, "Too many pages are open.")
+            return
+        await socket.accept()
+        self._sockets.add(socket)
+        sender = asyncio.create_task(self._send_commissioning(socket, commissioning))
+        try:
+            while True:
+                said = self._hear_commissioning(socket, commissioning, await socket.receive_text())
+                if said:
+                    await socket.send_json({"refused": said})
+        except (WebSocketDisconnect, RuntimeError):
+            pass
+        finally:
+            commissioning.leave(socket)
+            self._sockets.discard(socket)
+            sender.cancel()
+            with contextlib.suppress(asyncio.CancelledError, Exception):
+                await sender
+
+    def _hear_commissioning(
+        self, socket: WebSocket, commissioning: "Commissioning", text: str
+    ) -> str:
+        """What the page asks for; why it was refused, or nothing."""
+        try:
+            said = json.loads(text)
+        except ValueError:
+            return "Not understood."
+        if not isinstance(said, dict):
+            return "Not understood."
+        if not self._may_command(socket):
+            return "Give the PIN first."
+        try:
+            if said.get("begin") is True:
+                commissioning.begin(socket)
+            elif "answer" in said:
+                commissioning.answer(socket, said.get("number"), str(said["answer"]))
+        except ToolError as error:
+            return str(error)
+        return ""
+
+    async def _send_commissioning(self, socket: WebSocket, commissioning: "Commissioning") -> None:
+        version = -1
+        while True:
+            is_open = self._may_command(socket)
+            if not is_open and commissioning.leads(socket):
+                commissioning.stop("Commands were closed.")
+            seen = self.served.watcher.seen
+            version, picture = commissioning.picture(socket, version)
+            old = seen is None or time.monotonic() - seen.stamp_s > OLD_S
+            document: dict[str, object] = {
+                "open": is_open,
+                "problem": (self.served.watcher.problem or "No data.") if old else "",
+            }
+            if seen is not None:
+                document["view"] = view(seen)
+            if picture is not None:
+                document["dialogue"] = picture
+            await socket.send_json(document)
+            await asyncio.sleep(SEND_EVERY_S)
+
+    async def report(self, request: Request) -> Response:
+        """A file of the report, by one of its names."""
+        commissioning = self.served.commissioning
+        path = commissioning.report(request.path_params["name"]) if commissioning else None
+        if path is None:
+            return PlainTextResponse("There is no such report.", 404)
+        return FileResponse(path, headers={"Content-Security-Policy": REPORT_POLICY})
 
     async def _told(self, do: Callable[[], object]) -> Response:
         """What it returns, or why it was refused."""
@@ -279,11 +379,23 @@ def application(served: Served) -> Starlette:
         if asyncio.iscoroutine(started):
             await started
         yield
+        if served.commissioning is not None:
+            await run_in_threadpool(served.commissioning.close)
         if page.jog is not None:
             await run_in_threadpool(page.jog.close)
 
+    offered = []
+    if served.commissioning is not None:
+        offered = [
+            Route("/commission", _file("commission.html")),
+            Route("/commission.js", _file("commission.js")),
+            Route("/commission/report/{name}", page.report),
+            WebSocketRoute("/commission/live", page.commission),
+        ]
+
     return Starlette(
         routes=[
+            *offered,
             Route("/", _file("index.html")),
             Route("/page.css", _file("page.css")),
             Route("/page.js", _file("page.js")),

@@ -253,6 +253,8 @@ function hear(said) {
   }
   if (said.log) showLog(said.log);
   if (said.lay) drawLay(said.lay);
+  $("commissioning").hidden = !said.commissioning;
+  if (said.commissioning) $("commissioning").firstChild.textContent = said.commissioning;
   $("commands").hidden = !said.commands;
   $("keys").hidden = !said.open;
   $("parameter-keys").hidden = !said.open;

@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The commissioning as a page: who may lead it, that it is the command's, that leaving it stops."""
+
+import signal
+import subprocess
+import time
+import urllib.error
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+import pytest
+from levelwind.commission import guide, session
+from levelwind.commission.dialogue import STATE
+from levelwind.commission.session import Finding, Result, Session
+from levelwind.line.device import Device
+from levelwind.line.live import flag, read_live
+from levelwind.map_table import BenchCommand, Flag, SwitchContacts, SwitchFault
+from playwright.sync_api import Page, expect
+from served import PIN, TOOL, Served, free_port, wait
+
+Start = Callable[..., Served]
+Open = Callable[..., Page]
+Shot = Callable[[Page, str], None]
+NAMES = [step.name for step in guide.STEPS]
+STANDS_S = 1.5
+AWAITED_S = 5.0
+FINDING = Finding("x.known", "The <b>screw</b> is long.", "Nothing.", wrong=False)
+
+
+@pytest.fixture
+def served(start: Start, tmp_path: Path) -> Served:
+    folder = tmp_path / "winch"
+    folder.mkdir()
+    return start("--allow-commands", "--commission", str(folder), speed="3")
+
+
+def done_until(folder: Path, step: str) -> None:
+    """A commissioning whose steps before this one are done."""
+    before = NAMES[: NAMES.index(step)]
+    results = {
+        name: Result(done=True, at="2026-01-01 10:00:00", told={"Lead, mm": "20"},
+                     measured={"way, mm": 12.5}, findings=[FINDING])
+        for name in before
+    }  # fmt: skip
+    Session(folder / STATE, results=results, begun=session.now()).save()
+
+
+def lead(open_page: Open, served: Served, width: int = 1280) -> Page:
+    """The page, with the PIN given."""
+    page = open_page(served, width)
+    page.goto(served.url + "commission")
+    open_commands(page)
+    return page
+
+
+def open_commands(page: Page) -> None:
+    page.fill("#pin", PIN)
+    page.press("#pin", "Enter")
+    expect(page.locator("#begin")).to_be_enabled()
+
+
+def press(page: Page, choice: str, asked: str) -> None:
+    """A key of the question that is asked; it must be this one."""
+    expect(page.locator("#question-text")).to_contain_text(asked, timeout=8000)
+    page.click(f"[data-choice={choice}]")
+
+
+def push(device: Device, place_mm: float) -> None:
+    """The machine's hand on the carriage."""
+    device.write({"bench_argument": round(1000 * place_mm)})
+    device.write({"bench_command": BenchCommand.PLACE_CARRIAGE})
+
+
+def is_moving(device: Device) -> bool:
+    return flag(read_live(device), Flag.MOVING)
+
+
+def test_nothing_begins_without_the_pin(served: Served, open_page: Open) -> None:
+    page = open_page(served)
+    page.click("#commissioning a")
+    expect(page.locator("#begin")).to_be_disabled()
+    page.evaluate("tell({ begin: true })")
+    expect(page.locator("#answer")).to_have_text("Give the PIN first.")
+    page.evaluate("ask('/api/act', { name: 'stop' }).then((said) => set('answer', said))")
+    expect(page.locator("#answer")).to_have_text("Give the PIN first.")
+    open_commands(page)
+    page.click("#begin")
+    expect(page.locator("#step-title")).to_have_text("1 of 9  Identity")
+    looker = lead_too(page, served)
+    looker.evaluate("tell({ begin: true })")
+    expect(looker.locator("#answer")).to_contain_text("under way already")
+    looker.evaluate("tell({ number: 1, answer: 'g' })")
+    looker.goto(served.url)
+    expect(looker.locator("#commissioning")).to_have_text("Commissioning is under way")
+    looker.click("[data-act=index]")
+    expect(looker.locator("#answer")).to_contain_text("only Stop carriage and trims")
+    expect(page.locator("#question-text")).to_have_text("Begin this step?")
+    looker.click("[data-act=stop]")
+    expect(page.locator("#ended")).to_contain_text("Stop carriage was pressed.")
+
+
+def lead_too(page: Page, served: Served) -> Page:
+    """Another page of the same browser: it has the session, and does not lead."""
+    other = page.context.new_page()
+    other.goto(served.url + "commission")
+    expect(other.locator("#waiting")).to_contain_text("Another page leads")
+    return other
+
+
+def test_two_steps_by_hand(served: Served, open_page: Open, shot: Shot, tmp_path: Path) -> None:
+    page = lead(open_page, served)
+    page.click("#begin")
+    with served.device() as device:
+        device.write({"bench_switch_minus_fault": int(SwitchFault.NC_WIRE_BROKEN)})
+        expect(page.locator("#step-moves")).to_have_text("What will move: Nothing.")
+        press(page, "g", "Begin this step?")
+        press(page, "y", "factory values")
+        expect(page.locator("#step-title")).to_have_text("2 of 9  Switches")
+        press(page, "g", "Begin this step?")
+        press(page, "pair", "How is a limit switch wired")
+        press(page, "done", "to the middle by hand")
+        expect(page.locator("#step-findings")).to_contain_text(
+            "The minus limit switch, released, shows neither contact", timeout=8000
+        )
+        expect(page.locator("#step-findings")).to_contain_text("What to do: The wire of its NC")
+        shot(page, "commission_wrong_1280")
+        device.write({"bench_switch_minus_fault": 0})
+        press(page, "r", "Mended?")
+        press(page, "g", "Begin this step?")
+        press(page, "pair", "How is a limit switch wired")
+        press(page, "done", "to the middle by hand")
+        for side, place_mm in (("PLUS", 79.4), ("MINUS", -79.4)):
+            asked = page.locator("#request")
+            expect(asked).to_contain_text(f"Press the {side} limit switch", timeout=8000)
+            push(device, place_mm)
+            expect(asked).to_have_text("Let go of it.", timeout=8000)
+            push(device, 0)
+        press(page, "n", "overtravel switches?")
+        press(page, "done", "to the middle again")
+    expect(page.locator("#step-title")).to_have_text("3 of 9  Encoder")
+    held = session.load(tmp_path / "winch" / STATE)
+    assert [name for name, result in held.results.items() if result.done] == NAMES[:2]
+    assert held.values["switch_contacts"] == SwitchContacts.NO_NC_PAIR
+    assert held.results["contacts"].measured["plus limit switch"].endswith("both wires")
+    assert (tmp_path / "winch" / "before.yaml").is_file()
+    expect(page.locator("#steps li").nth(1)).to_contain_text("✓ done")
+
+
+def test_a_value_is_typed(served: Served, open_page: Open, shot: Shot, tmp_path: Path) -> None:
+    done_until(tmp_path / "winch", "stepper")
+    page = lead(open_page, served, 360)
+    expect(page.locator("#begin")).to_have_text("Go on with step 4")
+    page.click("#begin")
+    expect(page.locator("#step-moves")).to_contain_text("The key Stop carriage stops it.")
+    press(page, "g", "Begin this step?")
+    expect(page.locator("#question-text")).to_contain_text("the screw's lead")
+    expect(page.locator("#field")).to_have_value("20")
+    page.fill("#field", "far")
+    page.press("#field", "Enter")
+    expect(page.locator("#answer")).to_have_text("far is no number.")
+    page.fill("#field", "10,5")
+    page.click("#take")
+    expect(page.locator("#question-text")).to_contain_text("Microsteps")
+    expect(page.locator("#said")).to_contain_text("10.5")
+    page.click("#steps summary >> nth=0")
+    assert "<b>screw</b>" in page.locator("#steps").inner_text()
+    shot(page, "commission_360")
+    page.evaluate("scrollTo(0, document.body.scrollHeight)")
+    expect(page.locator("#stop")).to_be_in_viewport()
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    page.set_viewport_size({"width": 1280, "height": 900})
+    shot(page, "commission_1280")
+
+
+def away(page: Page) -> Mapping[str, Callable[[], object]]:
+    return {
+        "stop key": lambda: page.click("#stop"),
+        "commands closed": lambda: page.evaluate("ask('/api/leave', {})"),
+        "page closed": page.close,
+    }
+
+
+def test_whoever_leaves_stops_the_carriage_and_it_goes_on(
+    served: Served, open_page: Open, tmp_path: Path
+) -> None:
+    done_until(tmp_path / "winch", "line")
+    for way in away(None):  # type: ignore[arg-type]
+        page = lead(open_page, served)
+        expect(page.locator("#begin")).to_have_text("Go on with step 8")
+        page.click("#begin")
+        press(page, "g", "Begin this step?")
+        with served.device() as device:
+            wait(lambda: is_moving(device), AWAITED_S, "indexes")
+            away(page)[way]()
+            wait(lambda: not is_moving(device), STANDS_S, f"stands: {way}")
+            looked = time.monotonic()
+            while time.monotonic() - looked < 0.4:
+                assert not is_moving(device), f"goes on: {way}"
+        held = session.load(tmp_path / "winch" / STATE)
+        assert [name for name in NAMES if name in held.results] == NAMES[:7]
+        if way == "stop key":
+            expect(page.locator("#ended")).to_contain_text(
+                "Stop carriage was pressed. The carriage"
+            )
+            page.close()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_the_server_ends(
+    served: Served, open_page: Open, tmp_path: Path, number: signal.Signals
+) -> None:
+    done_until(tmp_path / "winch", "line")
+    page = lead(open_page, served)
+    page.click("#begin")
+    press(page, "g", "Begin this step?")
+    with served.device() as device:
+        wait(lambda: is_moving(device), AWAITED_S, "indexes")
+    assert served.process is not None
+    served.process.send_signal(number)
+    served.process.wait(5)
+    served.start()
+    with served.device() as device:
+        # Killed, an indexing ends by itself; ended, it has been stopped before.
+        wait(lambda: not is_moving(device), 0.2 if number == signal.SIGINT else 20, "stands")
+        assert flag(read_live(device), Flag.INDEXED) == (number == signal.SIGKILL)
+    open_commands_again = page.locator("#pin")
+    expect(open_commands_again).to_be_visible()
+    open_commands(page)
+    expect(page.locator("#begin")).to_have_text("Go on with step 8")
+
+
+def test_report_links_stay_in_the_folder(served: Served, open_page: Open, tmp_path: Path) -> None:
+    def status_of(name: str) -> int:
+        try:
+            served.get(f"commission/report/{name}")
+        except urllib.error.HTTPError as error:
+            return error.code
+        return 200
+
+    folder = tmp_path / "winch"
+    done_until(folder, "line")
+    held = session.load(folder / STATE)
+    held.active = {"pitch_um": 1}
+    (folder / "report.html").write_text("<style>p { color: red }</style><p>A report.")
+    (tmp_path / "secret.pdf").write_text("secret")
+    (folder / "report.pdf").symlink_to(tmp_path / "secret.pdf")
+    assert status_of("report.html") == 200
+    for name in (
+        "report.pdf", STATE, "before.yaml", "report.json", "..%2fsecret.pdf", "../secret.pdf",
+        "..%2freport.html", f"%2f{tmp_path}%2fsecret.pdf", "", ".", "report.html%00",
+    ):  # fmt: skip
+        assert status_of(name) in (400, 404), name
+    page = open_page(served)
+    page.goto(served.url + "commission")
+    expect(page.locator("#reports a")).to_have_text(["Report, HTML"])
+    with page.context.expect_page() as opened:
+        page.click("#reports a")
+    expect(opened.value.locator("p")).to_have_css("color", "rgb(255, 0, 0)")
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--port", "x"], "--commission: its steps move the carriage; give --allow-commands"),
+        (["--simulator", "--allow-commands"], "the demonstration drives this winch"),
+    ],
+)
+def test_where_it_cannot_be_offered(options: list[str], said: str, served: Served) -> None:
+    done = subprocess.run(
+        [str(TOOL), "serve", "--listen", f"127.0.0.1:{free_port()}", *options,
+         "--commission", str(served.folder), "--pin-file", str(served.pin_file)],
+        capture_output=True, text=True, timeout=20, check=False,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert said in done.stderr
