@@ -1,28 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """The commissioning as a page: who may lead it, that it is the command's, that leaving it stops."""
 
-import signal
-import subprocess
 import time
 import urllib.error
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from levelwind.cli import app
 from levelwind.commission import guide, session
 from levelwind.commission.dialogue import STATE
 from levelwind.commission.session import Finding, Result, Session
 from levelwind.line.device import Device
 from levelwind.line.live import flag, read_live
 from levelwind.map_table import BenchCommand, Flag, SwitchContacts, SwitchFault
+from levelwind.serve.guard import PinFile
 from playwright.sync_api import Page, expect
-from served import PIN, TOOL, Served, free_port, wait
+from served import PIN, Served, wait
+from typer.testing import CliRunner
 
 Start = Callable[..., Served]
 Open = Callable[..., Page]
 Shot = Callable[[Page, str], None]
 NAMES = [step.name for step in guide.STEPS]
 STANDS_S = 1.5
+STILL_S = 0.3
 AWAITED_S = 5.0
 FINDING = Finding("x.known", "The <b>screw</b> is long.", "Nothing.", wrong=False)
 
@@ -59,9 +61,19 @@ def open_commands(page: Page) -> None:
     expect(page.locator("#begin")).to_be_enabled()
 
 
+def shows(page: Page, place: str, text: str) -> None:
+    """It is there to be read; looked for at every frame."""
+    page.wait_for_function(
+        """([place, text]) => [...document.querySelectorAll(place)]
+        .some((at) => !at.closest("[hidden]") && at.textContent.includes(text))""",
+        arg=[place, text],
+        timeout=8000,
+    )
+
+
 def press(page: Page, choice: str, asked: str) -> None:
     """A key of the question that is asked; it must be this one."""
-    expect(page.locator("#question-text")).to_contain_text(asked, timeout=8000)
+    shows(page, "#question-text", asked)
     page.click(f"[data-choice={choice}]")
 
 
@@ -75,35 +87,63 @@ def is_moving(device: Device) -> bool:
     return flag(read_live(device), Flag.MOVING)
 
 
-def test_nothing_begins_without_the_pin(served: Served, open_page: Open) -> None:
+def test_the_pin_one_leader_and_typed_values(
+    served: Served, open_page: Open, shot: Shot, tmp_path: Path
+) -> None:
     page = open_page(served)
     page.click("#commissioning a")
     expect(page.locator("#begin")).to_be_disabled()
     page.evaluate("tell({ begin: true })")
-    expect(page.locator("#answer")).to_have_text("Give the PIN first.")
+    shows(page, "#answer", "Give the PIN first.")
     page.evaluate("ask('/api/act', { name: 'stop' }).then((said) => set('answer', said))")
-    expect(page.locator("#answer")).to_have_text("Give the PIN first.")
+    shows(page, "#answer", "Give the PIN first.")
     open_commands(page)
     page.click("#begin")
-    expect(page.locator("#step-title")).to_have_text("1 of 9  Identity")
+    shows(page, "#step-title", "1 of 9  Identity")
     looker = lead_too(page, served)
     looker.evaluate("tell({ begin: true })")
-    expect(looker.locator("#answer")).to_contain_text("under way already")
+    shows(looker, "#answer", "under way already")
     looker.evaluate("tell({ number: 1, answer: 'g' })")
     looker.goto(served.url)
-    expect(looker.locator("#commissioning")).to_have_text("Commissioning is under way")
+    shows(looker, "#commissioning", "Commissioning is under way")
     looker.click("[data-act=index]")
-    expect(looker.locator("#answer")).to_contain_text("only Stop carriage and trims")
-    expect(page.locator("#question-text")).to_have_text("Begin this step?")
+    shows(looker, "#answer", "only Stop carriage and trims")
+    shows(page, "#question-text", "Begin this step?")
     looker.click("[data-act=stop]")
-    expect(page.locator("#ended")).to_contain_text("Stop carriage was pressed.")
+    looker.close()  # a page behind another one is drawn once a second
+    shows(page, "#ended", "Stop carriage was pressed.")
+    done_until(tmp_path / "winch", "stepper")
+    page.set_viewport_size({"width": 360, "height": 760})
+    page.reload()
+    shows(page, "#begin", "Go on with step 4")
+    page.click("#begin")
+    shows(page, "#step-moves", "The key Stop carriage stops it.")
+    press(page, "g", "Begin this step?")
+    shows(page, "#question-text", "the screw's lead")
+    expect(page.locator("#field")).to_have_value("20")
+    page.fill("#field", "far")
+    page.press("#field", "Enter")
+    shows(page, "#answer", "far is no number.")
+    page.fill("#field", "10,5")
+    page.click("#take")
+    shows(page, "#question-text", "Microsteps")
+    shows(page, "#said", "10.5")
+    page.click("#steps summary >> nth=0")
+    assert "<b>screw</b>" in page.locator("#steps").inner_text()
+    page.evaluate("scrollTo(0, document.body.scrollHeight)")
+    expect(page.locator("#stop")).to_be_in_viewport()
+    page.evaluate("scrollTo(0, 0)")
+    shot(page, "commission_360")
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    page.set_viewport_size({"width": 1280, "height": 900})
+    shot(page, "commission_1280")
 
 
 def lead_too(page: Page, served: Served) -> Page:
     """Another page of the same browser: it has the session, and does not lead."""
     other = page.context.new_page()
     other.goto(served.url + "commission")
-    expect(other.locator("#waiting")).to_contain_text("Another page leads")
+    shows(other, "#waiting", "Another page leads")
     return other
 
 
@@ -112,17 +152,15 @@ def test_two_steps_by_hand(served: Served, open_page: Open, shot: Shot, tmp_path
     page.click("#begin")
     with served.device() as device:
         device.write({"bench_switch_minus_fault": int(SwitchFault.NC_WIRE_BROKEN)})
-        expect(page.locator("#step-moves")).to_have_text("What will move: Nothing.")
+        shows(page, "#step-moves", "What will move: Nothing.")
         press(page, "g", "Begin this step?")
         press(page, "y", "factory values")
-        expect(page.locator("#step-title")).to_have_text("2 of 9  Switches")
+        shows(page, "#step-title", "2 of 9  Switches")
         press(page, "g", "Begin this step?")
         press(page, "pair", "How is a limit switch wired")
         press(page, "done", "to the middle by hand")
-        expect(page.locator("#step-findings")).to_contain_text(
-            "The minus limit switch, released, shows neither contact", timeout=8000
-        )
-        expect(page.locator("#step-findings")).to_contain_text("What to do: The wire of its NC")
+        shows(page, "#step-findings", "The minus limit switch, released, shows neither contact")
+        shows(page, "#step-findings", "What to do: The wire of its NC")
         shot(page, "commission_wrong_1280")
         device.write({"bench_switch_minus_fault": 0})
         press(page, "r", "Mended?")
@@ -130,14 +168,13 @@ def test_two_steps_by_hand(served: Served, open_page: Open, shot: Shot, tmp_path
         press(page, "pair", "How is a limit switch wired")
         press(page, "done", "to the middle by hand")
         for side, place_mm in (("PLUS", 79.4), ("MINUS", -79.4)):
-            asked = page.locator("#request")
-            expect(asked).to_contain_text(f"Press the {side} limit switch", timeout=8000)
+            shows(page, "#request", f"Press the {side} limit switch")
             push(device, place_mm)
-            expect(asked).to_have_text("Let go of it.", timeout=8000)
+            shows(page, "#request", "Let go of it.")
             push(device, 0)
         press(page, "n", "overtravel switches?")
         press(page, "done", "to the middle again")
-    expect(page.locator("#step-title")).to_have_text("3 of 9  Encoder")
+    shows(page, "#step-title", "3 of 9  Encoder")
     held = session.load(tmp_path / "winch" / STATE)
     assert [name for name, result in held.results.items() if result.done] == NAMES[:2]
     assert held.values["switch_contacts"] == SwitchContacts.NO_NC_PAIR
@@ -146,87 +183,46 @@ def test_two_steps_by_hand(served: Served, open_page: Open, shot: Shot, tmp_path
     expect(page.locator("#steps li").nth(1)).to_contain_text("✓ done")
 
 
-def test_a_value_is_typed(served: Served, open_page: Open, shot: Shot, tmp_path: Path) -> None:
-    done_until(tmp_path / "winch", "stepper")
-    page = lead(open_page, served, 360)
-    expect(page.locator("#begin")).to_have_text("Go on with step 4")
-    page.click("#begin")
-    expect(page.locator("#step-moves")).to_contain_text("The key Stop carriage stops it.")
-    press(page, "g", "Begin this step?")
-    expect(page.locator("#question-text")).to_contain_text("the screw's lead")
-    expect(page.locator("#field")).to_have_value("20")
-    page.fill("#field", "far")
-    page.press("#field", "Enter")
-    expect(page.locator("#answer")).to_have_text("far is no number.")
-    page.fill("#field", "10,5")
-    page.click("#take")
-    expect(page.locator("#question-text")).to_contain_text("Microsteps")
-    expect(page.locator("#said")).to_contain_text("10.5")
-    page.click("#steps summary >> nth=0")
-    assert "<b>screw</b>" in page.locator("#steps").inner_text()
-    shot(page, "commission_360")
-    page.evaluate("scrollTo(0, document.body.scrollHeight)")
-    expect(page.locator("#stop")).to_be_in_viewport()
-    assert page.evaluate("document.documentElement.scrollWidth") <= 360
-    page.set_viewport_size({"width": 1280, "height": 900})
-    shot(page, "commission_1280")
-
-
-def away(page: Page) -> Mapping[str, Callable[[], object]]:
-    return {
-        "stop key": lambda: page.click("#stop"),
-        "commands closed": lambda: page.evaluate("ask('/api/leave', {})"),
-        "page closed": page.close,
-    }
+AWAY: dict[str, Callable[[Page, Served], object]] = {
+    "stop key": lambda page, served: page.click("#stop"),
+    "commands closed": lambda page, served: page.evaluate("ask('/api/leave', {})"),
+    "page closed": lambda page, served: page.close(),
+    "server ended": lambda page, served: served.stop(),
+    "server killed": lambda page, served: served.kill(),
+}
+INDEXING_S = 20.0
 
 
 def test_whoever_leaves_stops_the_carriage_and_it_goes_on(
     served: Served, open_page: Open, tmp_path: Path
 ) -> None:
     done_until(tmp_path / "winch", "line")
-    for way in away(None):  # type: ignore[arg-type]
-        page = lead(open_page, served)
-        expect(page.locator("#begin")).to_have_text("Go on with step 8")
+    page = lead(open_page, served)
+    for way, leave in AWAY.items():
+        shows(page, "#begin", "Go on with step 8")
         page.click("#begin")
         press(page, "g", "Begin this step?")
         with served.device() as device:
-            wait(lambda: is_moving(device), AWAITED_S, "indexes")
-            away(page)[way]()
-            wait(lambda: not is_moving(device), STANDS_S, f"stands: {way}")
+            wait(lambda device=device: is_moving(device), AWAITED_S, "indexes")
+        leave(page, served)
+        if way.startswith("server"):
+            served.start()
+        with served.device() as device:
+            # By itself it indexes again and again; an indexing that nobody stops ends at a switch.
+            limit_s = INDEXING_S if way == "server killed" else STANDS_S
+            wait(lambda device=device: not is_moving(device), limit_s, f"stands: {way}")
             looked = time.monotonic()
-            while time.monotonic() - looked < 0.4:
+            while time.monotonic() - looked < STILL_S:
                 assert not is_moving(device), f"goes on: {way}"
+            assert flag(read_live(device), Flag.INDEXED) == (way == "server killed")
         held = session.load(tmp_path / "winch" / STATE)
         assert [name for name in NAMES if name in held.results] == NAMES[:7]
         if way == "stop key":
-            expect(page.locator("#ended")).to_contain_text(
-                "Stop carriage was pressed. The carriage"
-            )
-            page.close()
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-def test_the_server_ends(
-    served: Served, open_page: Open, tmp_path: Path, number: signal.Signals
-) -> None:
-    done_until(tmp_path / "winch", "line")
-    page = lead(open_page, served)
-    page.click("#begin")
-    press(page, "g", "Begin this step?")
-    with served.device() as device:
-        wait(lambda: is_moving(device), AWAITED_S, "indexes")
-    assert served.process is not None
-    served.process.send_signal(number)
-    served.process.wait(5)
-    served.start()
-    with served.device() as device:
-        # Killed, an indexing ends by itself; ended, it has been stopped before.
-        wait(lambda: not is_moving(device), 0.2 if number == signal.SIGINT else 20, "stands")
-        assert flag(read_live(device), Flag.INDEXED) == (number == signal.SIGKILL)
-    open_commands_again = page.locator("#pin")
-    expect(open_commands_again).to_be_visible()
-    open_commands(page)
-    expect(page.locator("#begin")).to_have_text("Go on with step 8")
+            shows(page, "#ended", "was pressed. The carriage stands.")
+        elif way == "page closed":
+            page = lead(open_page, served)
+        else:
+            open_commands(page)
 
 
 def test_report_links_stay_in_the_folder(served: Served, open_page: Open, tmp_path: Path) -> None:
@@ -265,11 +261,9 @@ def test_report_links_stay_in_the_folder(served: Served, open_page: Open, tmp_pa
         (["--simulator", "--allow-commands"], "the demonstration drives this winch"),
     ],
 )
-def test_where_it_cannot_be_offered(options: list[str], said: str, served: Served) -> None:
-    done = subprocess.run(
-        [str(TOOL), "serve", "--listen", f"127.0.0.1:{free_port()}", *options,
-         "--commission", str(served.folder), "--pin-file", str(served.pin_file)],
-        capture_output=True, text=True, timeout=20, check=False,
-    )  # fmt: skip
-    assert done.returncode == 1
-    assert said in done.stderr
+def test_where_it_cannot_be_offered(options: list[str], said: str, tmp_path: Path) -> None:
+    PinFile(tmp_path / "pin.json").set(PIN)
+    given = [*options, "--commission", str(tmp_path), "--pin-file", str(tmp_path / "pin.json")]
+    refused = CliRunner().invoke(app, ["serve", *given])
+    assert refused.exit_code == 1
+    assert said in str(refused.exception) + refused.output

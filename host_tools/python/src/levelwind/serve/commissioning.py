@@ -194,6 +194,16 @@ class Commissioning:
 
     # ---- what the page shows -------------------------------------------------------------------
 
+    def look(self) -> None:
+        """A page has come: what the folder holds now, as the command may have gone on with it."""
+        with self._changed:
+            if self._leader is None:
+                try:
+                    self._held = self._session()
+                except ToolError as error:
+                    self._ended = str(error)
+                self._said()
+
     @property
     def is_running(self) -> bool:
         """Has it begun, and not come to its end?"""

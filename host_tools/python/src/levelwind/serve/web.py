@@ -275,6 +275,7 @@ class Page:
             return
         await socket.accept()
         self._sockets.add(socket)
+        await run_in_threadpool(commissioning.look)
         sender = asyncio.create_task(self._send_commissioning(socket, commissioning))
         try:
             while True:

@@ -174,7 +174,11 @@ function showQuestion(question) {
     return key;
   }));
   set("answer", "");
-  if (typed) $("field").select();
+  if (typed) {
+    $("field").focus({ preventScroll: true });
+    $("field").select();
+  }
+  $("asked").scrollIntoView({ block: "nearest" });  // not below the fold of a phone
 }
 
 function answer(number, given) {
