@@ -121,9 +121,10 @@ def test_the_pin_one_leader_and_typed_values(
     press(page, "g", "Begin this step?")
     shows(page, "#question-text", "the screw's lead")
     expect(page.locator("#field")).to_have_value("20")
-    page.fill("#field", "far")
-    page.press("#field", "Enter")
-    shows(page, "#answer", "far is no number.")
+    for bad in ("far", "nan"):
+        page.fill("#field", bad)
+        page.press("#field", "Enter")
+        shows(page, "#answer", f"{bad} is no number.")
     page.fill("#field", "10,5")
     page.click("#take")
     shows(page, "#question-text", "Microsteps")
@@ -223,6 +224,15 @@ def test_whoever_leaves_stops_the_carriage_and_it_goes_on(
             page = lead(open_page, served)
         else:
             open_commands(page)
+    done_until(tmp_path / "winch", "rope")  # a question, and the carriage follows the drum
+    page.reload()
+    page.click("#begin")
+    press(page, "g", "Begin this step?")
+    shows(page, "#question-text", "Haul in slowly")
+    with served.device() as device:
+        assert flag(read_live(device), Flag.TRACKING)
+        page.close()
+        wait(lambda: not flag(read_live(device), Flag.TRACKING), STANDS_S, "follows no more")
 
 
 def test_report_links_stay_in_the_folder(served: Served, open_page: Open, tmp_path: Path) -> None:

@@ -30,9 +30,20 @@ def run(bench: Bench) -> list[Path]:
     time; KeyboardInterrupt as it came; ToolError says what is wrong.
     """
     try:
-        guide.go_on(bench)
+        return _run(bench)
     except (StoppedError, KeyboardInterrupt):
-        bench.rest()
+        try:
+            bench.rest()
+        except KeyboardInterrupt:  # once more: it must not take the place of STOP
+            bench.rest()
+            raise
+        raise
+
+
+def _run(bench: Bench) -> list[Path]:
+    try:
+        guide.go_on(bench)
+    except StoppedError:
         raise
     except ToolError as ended:
         with contextlib.suppress(ToolError):

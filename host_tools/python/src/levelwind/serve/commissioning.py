@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The guided commissioning at a page: the dialogue of the command, and a page for the person."""
 
+import math
 import sys
 import threading
 import traceback
@@ -161,9 +162,11 @@ def _taken(question: dict[str, object], given: str) -> str:
     elif question["kind"] == "number":
         given = given.replace(",", ".")
         try:
-            float(given)
+            finite = math.isfinite(float(given))
         except ValueError:
-            raise ToolError(f"{given} is no number.") from None
+            finite = False
+        if not finite:
+            raise ToolError(f"{given} is no number.")
     elif not given:
         raise ToolError("Give a few words.")
     return given
@@ -318,13 +321,8 @@ class Commissioning:
     def _run(self, human: AtPage, held: session.Session) -> None:
         device = Device(self._owner.line, InterruptibleClient(self._owner, human.interruption))
         bench = Bench(device, human, held)
-        ended = "It could not be seen whether the carriage stands. Look at it."
         try:
-            dialogue.run(bench)
-            ended = f"Accepted by {held.accepted_by}. The winch is indexed and follows the drum."
-        except (StoppedError, KeyboardInterrupt) as stopped:
-            why = human.interruption.why or str(stopped)
-            ended = f"{why} The carriage stands. {human.to_go_on(held.path)}"
+            ended = self._end(bench, human)
         except ToolError as error:
             ended = f"{human.interruption.why}\n{error}".strip()
         except Exception as error:  # a fault of ours must not leave it moving
@@ -337,3 +335,15 @@ class Commissioning:
                 human.request, human.question = "", None
                 self._ended, self._leader = ended, None
                 self._said()
+
+    @staticmethod
+    def _end(bench: Bench, human: AtPage) -> str:
+        """Run it; how it has ended, in words. ToolError says what is wrong."""
+        try:
+            dialogue.run(bench)
+        except (StoppedError, KeyboardInterrupt) as stopped:
+            why = human.interruption.why or str(stopped)
+            return f"{why} The carriage stands. {human.to_go_on(bench.session.path)}"
+        return (
+            f"Accepted by {bench.session.accepted_by}. The winch is indexed and follows the drum."
+        )
