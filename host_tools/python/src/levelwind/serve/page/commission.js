@@ -137,7 +137,8 @@ function showReports(names) {
 function showSteps(steps, at) {
   redraw($("steps").querySelector("ol"), [steps, at], () => steps.map((step, index) => {
     const wrong = step.findings.some((one) => one.wrong);
-    const line = element("li", step.title + (step.done ? ": ✓ done " + step.at : wrong ? ": ▲ wrong" : index === at ? ": ▶ now" : ""));
+    const leftOut = step.findings.some((one) => one.code.endsWith(".left_out"));
+    const line = element("li", step.title + (leftOut ? ": – left out, not measured" : step.done ? ": ✓ done " + step.at : wrong ? ": ▲ wrong" : index === at ? ": ▶ now" : ""));
     if (index === at) line.setAttribute("aria-current", "step");
     const rows = [...step.told, ...step.measured, ...step.set.map(([name, value]) => ["set: " + name, value])];
     if (rows.length || (step.findings.length && index !== at)) {
