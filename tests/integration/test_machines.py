@@ -18,6 +18,7 @@ from levelwind.line.port import Line
 from levelwind.map_table import Command, Flag, Mode
 from levelwind.serve import demonstration
 from levelwind.simulate import machine, simulator
+from served import wait
 
 MINE = """\
 encoder_pulses_per_rev: 500
@@ -50,7 +51,7 @@ def mine(tmp_path: Path) -> Path:
 def levelwind_sim(folder: Path, *options: str) -> Iterator[Device]:
     """The tool's command, as a person runs it."""
     port = folder / "port"
-    arguments = ["sim", "--port", str(port), "--speed", "20", *options]
+    arguments = ["sim", "--port", str(port), "--speed", "6", *options]
     process = subprocess.Popen(
         [sys.executable, "-c", "from levelwind.cli import main; main()", *arguments],
         stdout=subprocess.PIPE,
@@ -67,6 +68,7 @@ def levelwind_sim(folder: Path, *options: str) -> Iterator[Device]:
 
 
 def index(device: Device) -> None:
+    wait(lambda: device.value("flags") >> Flag.DRUM_AT_REST & 1, what="the drum counts as resting")
     device.write({"mode": Mode.TRACK})
     device.command(Command.INDEX, limit_s=INDEX_LIMIT_S)
 
@@ -108,7 +110,7 @@ def test_the_stored_parameters_describe_the_machine(tmp_path: Path, mine: Path):
 def test_the_demonstration_runs_on_another_machine(tmp_path: Path, mine: Path):
     winch = machine.read(mine)
     said: list[str] = []
-    line = simulator.arguments(str(tmp_path / "port"), speed="20", machine=winch)
+    line = simulator.arguments(str(tmp_path / "port"), speed="6", machine=winch)
     with simulator.Simulator(line) as running, Device(Line(running.port)) as device:
         demonstration.Demonstration(lambda: device, said.append, winch.parameters())._set_up(device)
         assert device.value("flags") >> Flag.LAUNCH_PERMIT & 1

@@ -23,7 +23,7 @@ def test_the_launch_begins_with_the_rope_out_and_the_permit(
         shown.close()
 
     monkeypatch.setattr(launches, "play", launch)
-    with simulator.Simulator(simulator.arguments(port, speed="20")), Device(Line(port)) as device:
+    with simulator.Simulator(simulator.arguments(port, speed="6")), Device(Line(port)) as device:
         shown = demonstration.Demonstration(lambda: device, said.append)
         shown.start()
         shown._thread.join(60)
