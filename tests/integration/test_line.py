@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What comes over a line that is not as it should be: answers of others, echoes, late bytes."""
+"""What comes over a line that is not as it should be: answers of others, late bytes."""
 
 import signal
-import termios
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,18 +13,6 @@ from slave import UNIT, RawLine, Simulator, Slave, sealed, start_simulator
 STOP = bytes.fromhex("06 0000 0002")
 READ_SELF_TEST = bytes.fromhex("04 0000 0002")
 SELF_TEST_ANSWER = bytes.fromhex("04 04 12345678")
-
-
-@contextmanager
-def echo(slave: Slave) -> Iterator[None]:
-    """Whatever the slave sends comes back to it: the pseudo terminal's own echo."""
-    with Path(slave.port).open("rb", buffering=0) as terminal:
-        before = termios.tcgetattr(terminal)
-        echoing = termios.tcgetattr(terminal)
-        echoing[3] = echoing[3] & ~termios.ECHOCTL | termios.ECHO
-        termios.tcsetattr(terminal, termios.TCSANOW, echoing)
-        yield
-        termios.tcsetattr(terminal, termios.TCSANOW, before)
 
 
 @pytest.mark.parametrize("unit", [UNIT, 0])
@@ -47,36 +33,6 @@ def test_an_answer_of_another_device_is_no_request(
         assert raw.request(bytes.fromhex(pdu), unit) == b""
     # Nobody has asked for longer than the time-out, whatever else was on the line.
     assert raw.request(bytes.fromhex("02 0013 0001")) == bytes.fromhex("02 01 01")
-
-
-def test_on_a_line_with_echo_a_command_runs_once(slave: Slave, raw: RawLine) -> None:
-    sequence = slave.read("command_sequence")
-    with echo(slave):
-        for runs in range(1, 6):
-            assert raw.request(STOP) == STOP
-            slave.settle(500)
-            assert slave.read("command_sequence") == (sequence + runs) & 0xFFFF
-        exceptions = slave.read("exceptions")
-        assert raw.request(b"\x63") == b"\xe3\x01"
-        assert slave.read("exceptions") == exceptions + 1
-    assert raw.request(READ_SELF_TEST) == SELF_TEST_ANSWER
-
-
-def test_on_a_line_with_echo_a_jog_ends_by_itself(slave: Slave, raw: RawLine) -> None:
-    with echo(slave):
-        jog = bytes.fromhex("06 0002 0001")
-        assert raw.request(jog) == jog
-        slave.wait(lambda: slave.read("state") == State.JOGGING)
-        slave.wait(lambda: slave.read("state") != State.JOGGING, 2000)
-
-
-def test_on_a_line_with_echo_the_master_is_missed(slave: Slave, raw: RawLine) -> None:
-    assert slave.write("master_timeout_ms", 1000) == 0
-    assert slave.command(Command.APPLY) == Result.DONE
-    with echo(slave):
-        assert raw.request(STOP) == STOP
-        time.sleep(1.5)
-        assert slave.flag(Flag.MASTER_LOST)
 
 
 def test_a_repeated_write_is_done_again(slave: Slave, raw: RawLine) -> None:

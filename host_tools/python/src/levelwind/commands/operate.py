@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands for the operator: what is going on, and what shall happen."""
 
+import signal
 import time
 from collections.abc import Callable
 from math import isfinite
@@ -124,6 +125,7 @@ class Watching:
         self._reason = "waiting for the first answer"
         self._heard_s = time.monotonic()
         self._patience_s = NO_DATA_AFTER_S
+        self._interrupted = False
 
     def view(self) -> Panel:
         """What to show now; nothing that is old."""
@@ -133,19 +135,27 @@ class Watching:
         return panel
 
     def run(self, show: Callable[[], None]) -> NoReturn:
-        """Read for ever, also after the port or the controller was gone."""
+        """Read for ever, also after the port or the controller was gone. Until Ctrl-C."""
+        signal.signal(signal.SIGINT, self._interrupt)
         while True:
             try:
                 with Device(self._line) as device:
                     travel = read_travel(device)
-                    while True:
+                    while not self._interrupted:
                         self._read(device, travel)
                         show()
                         time.sleep(WATCH_PERIOD_S)
             except ToolError as error:
                 self._panel, self._reason, self.told = None, str(error), "no data"
                 show()
+            if self._interrupted:
+                raise KeyboardInterrupt
             time.sleep(WATCH_PERIOD_S)
+
+    def _interrupt(self, *_: object) -> None:
+        """The interpreter drops what is raised in a destructor or a callback: keep it in mind."""
+        self._interrupted = True
+        raise KeyboardInterrupt
 
     def _read(self, device: Device, travel: Travel) -> None:
         began = time.monotonic()

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A line that gives back what the slave sends on it. In real time: an echo that comes 20 ms late is
+none, and at ten times real time a busy computer is as late as that in 2 ms.
+"""
+
+import termios
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from levelwind.map_table import Command, Flag, Result, State
+from slave import RawLine, Simulator, Slave, start
+
+STOP = bytes.fromhex("06 0000 0002")
+READ_SELF_TEST = bytes.fromhex("04 0000 0002")
+SELF_TEST_ANSWER = bytes.fromhex("04 04 12345678")
+
+
+@pytest.fixture(scope="module")
+def simulator(target: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulator | None]:
+    if target.startswith("serial:"):
+        yield None
+        return
+    folder = tmp_path_factory.mktemp(target)
+    running = start(target, folder, folder / "parameters.bin")
+    yield running
+    assert running.stop() == 0
+
+
+@contextmanager
+def echo(slave: Slave) -> Iterator[None]:
+    """Whatever the slave sends comes back to it: the pseudo terminal's own echo."""
+    with Path(slave.port).open("rb", buffering=0) as terminal:
+        before = termios.tcgetattr(terminal)
+        echoing = termios.tcgetattr(terminal)
+        echoing[3] = echoing[3] & ~termios.ECHOCTL | termios.ECHO
+        termios.tcsetattr(terminal, termios.TCSANOW, echoing)
+        yield
+        termios.tcsetattr(terminal, termios.TCSANOW, before)
+
+
+def test_a_command_runs_once(slave: Slave, raw: RawLine) -> None:
+    sequence = slave.read("command_sequence")
+    with echo(slave):
+        for runs in range(1, 6):
+            assert raw.request(STOP) == STOP
+            slave.settle(500)
+            assert slave.read("command_sequence") == (sequence + runs) & 0xFFFF
+        exceptions = slave.read("exceptions")
+        assert raw.request(b"\x63") == b"\xe3\x01"
+        assert slave.read("exceptions") == exceptions + 1
+    assert raw.request(READ_SELF_TEST) == SELF_TEST_ANSWER
+
+
+def test_a_jog_ends_by_itself(slave: Slave, raw: RawLine) -> None:
+    with echo(slave):
+        jog = bytes.fromhex("06 0002 0001")
+        assert raw.request(jog) == jog
+        slave.wait(lambda: slave.read("state") == State.JOGGING)
+        slave.wait(lambda: slave.read("state") != State.JOGGING, 2000)
+
+
+def test_the_master_is_missed(slave: Slave, raw: RawLine) -> None:
+    assert slave.write("master_timeout_ms", 1000) == 0
+    assert slave.command(Command.APPLY) == Result.DONE
+    with echo(slave):
+        assert raw.request(STOP) == STOP
+        time.sleep(1.5)
+        assert slave.flag(Flag.MASTER_LOST)
