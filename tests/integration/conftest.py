@@ -25,12 +25,16 @@ def target(request: pytest.FixtureRequest) -> str:
 
 
 @pytest.fixture(scope="module")
-def simulator(target: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulator | None]:
+def simulator(
+    request: pytest.FixtureRequest, target: str, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Simulator | None]:
+    """One for a module, which may give the simulator SIMULATOR_OPTIONS."""
     if target.startswith("serial:"):
         yield None
         return
     folder = tmp_path_factory.mktemp(target)
-    running = start(target, folder, folder / "parameters.bin", fast=True)
+    options = getattr(request.module, "SIMULATOR_OPTIONS", ())
+    running = start(target, folder, folder / "parameters.bin", fast=True, options=options)
     yield running
     if running.process.poll() is None:
         assert running.stop() == 0

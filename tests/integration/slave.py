@@ -9,7 +9,7 @@ import subprocess
 import sys
 import threading
 import tty
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,13 +39,17 @@ class Simulator:
         return self.process.wait(timeout=10)
 
 
-def start(target: str, folder: Path, storage: Path, *, fast: bool = False) -> Simulator:
+def start(
+    target: str, folder: Path, storage: Path, *, fast: bool = False, options: Sequence[str] = ()
+) -> Simulator:
     """Start the program of a target and wait until it answers.
 
     `storage` is the file that keeps its parameters. `fast` lets its time pass faster than ours.
+    `options` are the simulator's.
     """
+    if target == "sim":
+        return start_simulator(folder, storage, fast, *options)
     starters = {
-        "sim": start_simulator,
         "native_sim": start_native_sim,
         "board": start_board,
         "qemu": start_qemu,

@@ -7,30 +7,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import pytest
 from levelwind.map_table import Command, Flag, Result, State
-from slave import RawLine, Simulator, Slave, start, start_simulator
+from slave import RawLine, Slave
 
+# A pseudo terminal gives the echo back at once, but a busy computer reads it some milliseconds
+# late; what comes a frame's silence late is no echo.
+SIMULATOR_OPTIONS = ("--frame-silence-ms", "20")
 STOP = bytes.fromhex("06 0000 0002")
 READ_SELF_TEST = bytes.fromhex("04 0000 0002")
 SELF_TEST_ANSWER = bytes.fromhex("04 04 12345678")
-
-
-@pytest.fixture(scope="module")
-def simulator(target: str, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Simulator | None]:
-    if target.startswith("serial:"):
-        yield None
-        return
-    folder = tmp_path_factory.mktemp(target)
-    storage = folder / "parameters.bin"
-    if target == "sim":
-        # A pseudo terminal gives the echo back at once, but a busy computer reads it some
-        # milliseconds late; what comes a frame's silence late is no echo.
-        running = start_simulator(folder, storage, True, "--frame-silence-ms", "20")
-    else:
-        running = start(target, folder, storage, fast=True)
-    yield running
-    assert running.stop() == 0
 
 
 @contextmanager

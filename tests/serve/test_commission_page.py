@@ -95,7 +95,7 @@ def test_the_pin_one_leader_and_typed_values(
     expect(page.locator("#begin")).to_be_disabled()
     page.evaluate("tell({ begin: true })")
     shows(page, "#answer", "Give the PIN first.")
-    page.evaluate("ask('/api/act', { name: 'stop' }).then((said) => set('answer', said))")
+    page.evaluate("ask('/api/act', { name: 'stop' }).then((said) => set('answer', said.text))")
     shows(page, "#answer", "Give the PIN first.")
     open_commands(page)
     page.click("#begin")

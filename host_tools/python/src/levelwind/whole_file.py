@@ -7,6 +7,14 @@ from pathlib import Path
 from levelwind.errors import ToolError
 
 
+def make_folder(folder: Path) -> None:
+    """A folder for such files, if it is not there; ToolError says why it cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ToolError(f"{folder} cannot be made: {error.strerror}.") from error
+
+
 def write(path: Path, content: bytes | str) -> None:
     """Write a file, text as UTF-8. On a full disk what was there stays; ToolError says why."""
     data = content.encode() if isinstance(content, str) else content

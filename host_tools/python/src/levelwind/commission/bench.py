@@ -145,10 +145,9 @@ class Bench:
 
     def rate_for(self, mm_per_s: float) -> int:
         """Edges per second at which the carriage is so fast, within the limits of an index rate."""
-        per_edge_mm = self.device.value("ks") / USTEP * self.um_per_ustep() / 1000
         assert RATE.min is not None
         assert RATE.max is not None
-        return min(max(round(mm_per_s / per_edge_mm), RATE.min), RATE.max)
+        return min(max(round(mm_per_s / self.speed_mm_per_s(1)), RATE.min), RATE.max)
 
     def speed_mm_per_s(self, rate: int) -> float:
         """The carriage's speed at a rate of edges."""
@@ -179,8 +178,15 @@ class Bench:
     def rest(self) -> None:
         """STOP, and wait until the carriage stands."""
         self.device.command(Command.STOP)
+        self._until_it_stands("STOP")
+
+    def _until_it_stands(self, after: str) -> None:
         if not self.see(lambda: not self.flags(Flag.MOVING)[0], REST_LIMIT_S):
-            raise ToolError("The carriage does not come to rest after STOP. Cut its power.")
+            raise ToolError(f"The carriage does not come to rest after {after}. Cut its power.")
+
+    def steps_since(self, before: int) -> int:
+        """Step pulses that were given since the register `steps` had this value."""
+        return (self.device.value("steps") - before) & 0xFFFFFFFF
 
     def current_off(self) -> None:
         """No current: hands may move the carriage."""
@@ -224,8 +230,7 @@ class Bench:
                 time.sleep(OFTEN_S if end else JOG_REWRITE_S)
         finally:
             self.device.write({"jog": 0})
-        if not self.see(lambda: not self.flags(Flag.MOVING)[0], REST_LIMIT_S):
-            raise ToolError("The carriage does not come to rest after a jog. Cut its power.")
+        self._until_it_stands("a jog")
         return self.live()
 
     def index(self, step: str) -> Index:
@@ -238,8 +243,7 @@ class Bench:
             raise
         except RefusedError as refused:
             raise self.fault(step, refused) from None
-        now = self.device.read_names("steps", "span_error_um")
-        return Index((now["steps"] - before) & 0xFFFFFFFF, now["span_error_um"])
+        return Index(self.steps_since(before), self.device.value("span_error_um"))
 
     def fault(self, step: str, refused: RefusedError) -> WrongError:
         """What an indexing that failed says."""

@@ -4,6 +4,7 @@
 import contextlib
 from pathlib import Path
 
+from levelwind import whole_file
 from levelwind.commission import guide, report, session
 from levelwind.commission.bench import Bench
 from levelwind.commission.human import StoppedError
@@ -14,10 +15,7 @@ STATE = "commissioning.json"
 
 def begin(folder: Path) -> session.Session:
     """A new one in a folder, which is made; ToolError where it cannot be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ToolError(f"{folder} cannot be made: {error.strerror}.") from error
+    whole_file.make_folder(folder)
     held = session.Session(folder / STATE, begun=session.now())
     held.save()
     return held

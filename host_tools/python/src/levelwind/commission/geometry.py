@@ -178,8 +178,7 @@ def _to_switch(bench: Bench, direction: int) -> int:
             f"No {side} switch within {travel_mm:.0f} mm.",
             "Is the carriage free, does the stepper turn the screw, does the coupling hold?",
         )
-    steps = (bench.device.value("steps") - before) & 0xFFFFFFFF
-    return round(steps * bench.um_per_ustep())
+    return round(bench.steps_since(before) * bench.um_per_ustep())
 
 
 def _hysteresis(bench: Bench) -> float:

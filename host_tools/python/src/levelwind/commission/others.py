@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Steps 1 and 9: what the controller is, and the first rope."""
 
+from collections.abc import Mapping
+
 from levelwind.commission.bench import Bench, wrong
 from levelwind.commission.session import Result
 from levelwind.files import backups
@@ -26,6 +28,15 @@ CHECKS = (
      "switches keep their places?"),
 )  # fmt: skip
 BESIDE = (LaunchInhibit.NOT_TRACKING,)
+
+
+def machine_of(values: Mapping[str, int]) -> dict[str, str]:
+    """What a report says of the controller, by its IDENTITY_POINTS."""
+    return {
+        "firmware": version_of(values),
+        "image": image_of(values) or "none: a simulator",
+        "host": enum_label(Host, values["host"]),
+    }
 
 
 def identify(bench: Bench, result: Result) -> None:
@@ -55,11 +66,7 @@ def identify(bench: Bench, result: Result) -> None:
         raise wrong("identify.locked", "The write lock is closed.", "`levelwind unlock` first.")
     if not flag(bench.live(), Flag.DRUM_AT_REST):
         raise wrong("identify.drum", "The drum turns.", "Let it come to rest.")
-    machine = {
-        "firmware": version_of(values),
-        "image": image_of(values) or "none: a simulator",
-        "host": enum_label(Host, values["host"]),
-    }
+    machine = machine_of(values)
     bench.session.machine = machine
     result.measured.update(machine)
     other = {p.name: format_value(p, active[p.name]) for p in PARAMETERS

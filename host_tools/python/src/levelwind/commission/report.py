@@ -16,10 +16,11 @@ from matplotlib.figure import Figure
 
 from levelwind import whole_file
 from levelwind.commission.guide import STEPS
+from levelwind.commission.others import machine_of
 from levelwind.commission.session import Result, Session
 from levelwind.errors import ToolError
 from levelwind.line.device import Device
-from levelwind.line.live import IDENTITY_POINTS, image_of, version_of
+from levelwind.line.live import IDENTITY_POINTS
 from levelwind.line.parameter_sets import read_set, set_crc
 from levelwind.line.points import PARAMETERS, format_value
 from levelwind.map_table import PRODUCT_VERSION
@@ -34,10 +35,7 @@ LEFT_OUT = (".left_out",)
 
 def write(session: Session, folder: Path) -> list[Path]:
     """report.json, report.html and report.pdf in a folder; ToolError where they cannot be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise ToolError(f"{folder} cannot be made: {error.strerror}.") from error
+    whole_file.make_folder(folder)
     parameters = {p.name: session.active[p.name] for p in PARAMETERS if not p.secret}
     document = {
         "levelwind_report": FORM,
@@ -45,7 +43,7 @@ def write(session: Session, folder: Path) -> list[Path]:
         "parameters": parameters,
         **session.document(),
     }
-    pictures = {name: figure for name, held in session.results.items()
+    pictures = {name: _picture(figure) for name, held in session.results.items()
                 if (figure := _plot(name, held)) is not None}  # fmt: skip
     paths = [folder / f"report.{suffix}" for suffix in ("json", "html", "pdf")]
     whole_file.write(paths[0], json.dumps(document, indent=1) + "\n")
@@ -135,16 +133,17 @@ def _plot(name: str, held: Result) -> Figure | None:
     return figure
 
 
-def _picture(figure: Figure, form: str) -> bytes:
+def _picture(figure: Figure) -> bytes:
+    """As PNG, for both."""
     written = io.BytesIO()
-    figure.savefig(written, format=form, dpi=150)
+    figure.savefig(written, format="png", dpi=150)
     return written.getvalue()
 
 
 # ---- HTML --------------------------------------------------------------------------------------
 
 
-def _html(session: Session, pictures: Mapping[str, Figure]) -> str:
+def _html(session: Session, pictures: Mapping[str, bytes]) -> str:
     template = resources.files("levelwind.commission").joinpath("report.html.j2").read_text("utf-8")
     accepted, verdict = _verdict(session)
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
@@ -153,10 +152,7 @@ def _html(session: Session, pictures: Mapping[str, Figure]) -> str:
         verdict=verdict,
         facts=_facts(session),
         steps=[(number, step, _held(session, step.name)) for number, step in enumerate(STEPS, 1)],
-        pictures={
-            name: base64.b64encode(_picture(figure, "png")).decode()
-            for name, figure in pictures.items()
-        },
+        pictures={name: base64.b64encode(picture).decode() for name, picture in pictures.items()},
         values=_values(session),
     )
 
@@ -212,7 +208,7 @@ class _Pdf(FPDF):
         self.ln(2)
 
 
-def _pdf(session: Session, pictures: Mapping[str, Figure]) -> bytes:
+def _pdf(session: Session, pictures: Mapping[str, bytes]) -> bytes:
     pdf = _Pdf()
     accepted, verdict = _verdict(session)
     pdf.line_of("Commissioning of a level wind", 16, "B", 2)
@@ -229,7 +225,7 @@ def _pdf(session: Session, pictures: Mapping[str, Figure]) -> bytes:
                 pdf.rows([(word, ""), *((name, str(value)) for name, value in rows.items())],
                          (100, 90), heading=True)  # fmt: skip
         if step.name in pictures:
-            pdf.image(io.BytesIO(_picture(pictures[step.name], "png")), w=180)
+            pdf.image(io.BytesIO(pictures[step.name]), w=180)
             pdf.ln(2)
         for finding in held.findings:
             word = "WRONG" if finding.wrong else "Note"
@@ -271,13 +267,10 @@ def differences(document: Mapping[str, object], device: Device) -> list[str]:
         found.append("the report was never signed")
     elif set_crc({**dict.fromkeys((p.name for p in PARAMETERS), 0), **parameters}) != accepted:
         found.append("the report's parameters are not those that were signed: it was changed")
-    identity = device.read(IDENTITY_POINTS)
-    for name, told, is_ in (
-        ("firmware", machine.get("firmware"), version_of(identity)),
-        ("image", machine.get("image"), image_of(identity) or "none: a simulator"),
-    ):
-        if told != is_:
-            found.append(f"{name}: {told} in the report, {is_} in the machine")
+    now = machine_of(device.read(IDENTITY_POINTS))
+    for name in ("firmware", "image"):
+        if machine.get(name) != now[name]:
+            found.append(f"{name}: {machine.get(name)} in the report, {now[name]} in the machine")
     active = read_set(device, "active")
     for point in PARAMETERS:
         if point.secret or point.scope != "motion" or point.name not in parameters:

@@ -130,7 +130,7 @@ def _measured(bench: Bench, direction: int, seconds: float, way: str) -> tuple[i
             f"The controller lets nothing move {way}: {refused}",
             "Is it at that switch? Push it to the middle by hand, in `levelwind mode off`.",
         ) from None
-    steps = (bench.device.value("steps") - before) & 0xFFFFFFFF
+    steps = bench.steps_since(before)
     if not steps:
         raise wrong("stepper.no_steps", "No step pulse was given.", "`levelwind status` says why.")
     way_mm = bench.human.number(

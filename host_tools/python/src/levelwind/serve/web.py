@@ -3,10 +3,11 @@
 
 import asyncio
 import contextlib
+import functools
 import json
 import time
 from collections import deque
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -97,36 +98,52 @@ class Page:
 
     async def live(self, socket: WebSocket) -> None:
         """What happens, ten times a second; from the page only that a key is held."""
+        await self._attend(socket, self._send, self._hear, self._let_go)
+
+    async def _attend(
+        self,
+        socket: WebSocket,
+        send: Callable[[WebSocket], Awaitable[None]],
+        hear: Callable[[WebSocket, str], str],
+        gone: Callable[[WebSocket], None],
+    ) -> None:
+        """A page's connection to its end: `send` goes on beside `hear`, which may refuse."""
         if len(self._sockets) >= SOCKETS_MAX:
             await socket.close(1013, "Too many pages are open.")
             return
         await socket.accept()
         self._sockets.add(socket)
-        sender = asyncio.create_task(self._send(socket))
+        sender = asyncio.ensure_future(send(socket))
         try:
             while True:
-                self._hear(socket, await socket.receive_text())
+                refused = hear(socket, await socket.receive_text())
+                if refused:
+                    await socket.send_json({"refused": refused})
         except (WebSocketDisconnect, RuntimeError):
             pass
         finally:
-            if self.jog is not None:
-                self.jog.let_go(socket)
+            gone(socket)
             self._sockets.discard(socket)
             sender.cancel()
             with contextlib.suppress(asyncio.CancelledError, Exception):
                 await sender
 
-    def _hear(self, socket: WebSocket, text: str) -> None:
+    def _let_go(self, socket: WebSocket) -> None:
+        if self.jog is not None:
+            self.jog.let_go(socket)
+
+    def _hear(self, socket: WebSocket, text: str) -> str:
         try:
             direction = int(json.loads(text)["jog"])
         except (ValueError, KeyError, TypeError):
-            return
+            return ""
         if self.jog is None or not self._may_command(socket) or self._is_commissioned():
-            return
+            return ""
         if direction in (-1, 1):
             self.jog.hold(socket, direction)
         else:
             self.jog.let_go(socket)
+        return ""
 
     async def _send(self, socket: WebSocket) -> None:
         served = self.served
@@ -270,29 +287,16 @@ class Page:
     async def commission(self, socket: WebSocket) -> None:
         """The dialogue: what it says and asks; from the page the beginning, and answers."""
         commissioning = self.served.commissioning
-        if commissioning is None or len(self._sockets) >= SOCKETS_MAX:
-            await socket.close(1013, "Too many pages are open.")
-            return
-        await socket.accept()
-        self._sockets.add(socket)
-        await run_in_threadpool(commissioning.look)
-        sender = asyncio.create_task(self._send_commissioning(socket, commissioning))
-        try:
-            while True:
-                said = self._hear_commissioning(socket, commissioning, await socket.receive_text())
-                if said:
-                    await socket.send_json({"refused": said})
-        except (WebSocketDisconnect, RuntimeError):
-            pass
-        finally:
-            commissioning.leave(socket)
-            self._sockets.discard(socket)
-            sender.cancel()
-            with contextlib.suppress(asyncio.CancelledError, Exception):
-                await sender
+        assert commissioning is not None, "else there is no such route"
+        await self._attend(
+            socket,
+            functools.partial(self._send_commissioning, commissioning),
+            functools.partial(self._hear_commissioning, commissioning),
+            commissioning.leave,
+        )
 
     def _hear_commissioning(
-        self, socket: WebSocket, commissioning: "Commissioning", text: str
+        self, commissioning: "Commissioning", socket: WebSocket, text: str
     ) -> str:
         """What the page asks for; why it was refused, or nothing."""
         try:
@@ -312,7 +316,8 @@ class Page:
             return str(error)
         return ""
 
-    async def _send_commissioning(self, socket: WebSocket, commissioning: "Commissioning") -> None:
+    async def _send_commissioning(self, commissioning: "Commissioning", socket: WebSocket) -> None:
+        await run_in_threadpool(commissioning.look)
         version = -1
         while True:
             is_open = self._may_command(socket)
@@ -399,6 +404,7 @@ def application(served: Served) -> Starlette:
             *offered,
             Route("/", _file("index.html")),
             Route("/page.css", _file("page.css")),
+            Route("/common.js", _file("common.js")),
             Route("/page.js", _file("page.js")),
             Route("/icon.svg", _file("icon.svg")),
             WebSocketRoute("/live", page.live),

@@ -2,13 +2,8 @@
 // The page draws the dialogue as the server has it, and hands on what is pressed. It decides nothing.
 "use strict";
 
-const RECONNECT_MS = 500;
-const STALE_MS = 1000;
 const WORDS = { y: "Yes", n: "No", g: "Go", l: "Leave it out", s: "Stop here", r: "Mended, again", done: "Done",
   pair: "NO and NC", no: "NO alone", nc: "NC alone" };
-
-const $ = (id) => document.getElementById(id);
-const set = (id, text) => { const at = $(id); if (at.textContent !== text) at.textContent = text; };
 
 let socket = null;
 let dialogue = null;
@@ -33,17 +28,6 @@ function tell(said) {
   set("answer", "");
   if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(said));
   else set("answer", "The server does not answer.");
-}
-
-async function ask(path, body) {
-  try {
-    const answer = await fetch(path, {
-      method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body),
-    });
-    return (await answer.json()).text;
-  } catch {
-    return "No answer from the server: it may have been done.";
-  }
 }
 
 function hear(said) {
@@ -197,14 +181,14 @@ $("begin").addEventListener("click", () => tell({ begin: true }));
 
 $("stop").addEventListener("click", async () => {
   set("answer", "…");
-  set("answer", await ask("/api/act", { name: "stop" }));
+  set("answer", (await ask("/api/act", { name: "stop" })).text);
 });
 
 $("pin-form").addEventListener("submit", async (event) => {
   event.preventDefault();
   const pin = $("pin").value;
   $("pin").value = "";
-  set("answer", await ask("/api/pin", { pin }));
+  set("answer", (await ask("/api/pin", { pin })).text);
   if (socket) socket.close();  // the new one carries the session
 });
 

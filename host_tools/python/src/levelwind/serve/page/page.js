@@ -2,15 +2,11 @@
 // The page draws what the server says; how old that is it finds out itself.
 "use strict";
 
-const STALE_MS = 1000;
-const RECONNECT_MS = 500;
 const GIVE_UP_MS = 3000;
 const WINDOW_MS = 30000;
 const JOG_EVERY_MS = 80;
 const TREND_S = 300;
 
-const $ = (id) => document.getElementById(id);
-const set = (id, text) => { const at = $(id); if (at.textContent !== text) at.textContent = text; };
 const mm = (value) => (value >= 0 ? "+" : "−") + Math.abs(value).toFixed(1);
 
 // ---- age ----------------------------------------------------------------------------------------
@@ -270,17 +266,6 @@ function hear(said) {
 }
 
 // ---- commands -----------------------------------------------------------------------------------
-
-async function ask(path, body) {
-  try {
-    const answer = await fetch(path, body === undefined ? {} : {
-      method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(body),
-    });
-    return Object.assign(await answer.json(), answer.ok ? {} : { refused: true });
-  } catch {
-    return { refused: true, text: "No answer from the server: it may have been done." };
-  }
-}
 
 async function act(body, where = "answer") {
   set(where, "…");
