@@ -208,6 +208,23 @@ def test_parameters(start: Start, open_page: Open, shot: Shot) -> None:
         assert device.value("pitch_um") == 11_000
 
 
+def test_typing_goes_on_when_the_table_is_drawn_again(start: Start, open_page: Open) -> None:
+    served = start("--allow-commands")
+    page = open_page(served)
+    page.fill("#pin", PIN)
+    page.press("#pin", "Enter")
+    expect(page.locator("#keys")).to_be_visible()
+    page.click("#parameters summary")
+    page.fill("#filter", "pitch_um")
+    field = page.locator("input[data-name=pitch_um]")
+    field.fill("11")
+    page.evaluate("readParameters()")
+    page.keyboard.type("000")
+    expect(field).to_have_value("11000")
+    page.click("#stage")
+    expect(page.locator("#parameter-answer")).to_contain_text("staged")
+
+
 def test_launches_with_their_pictures(start: Start, open_page: Open, tmp_path: Path) -> None:
     served = start("--record", str(tmp_path / "launches.sqlite"))
     served.index()

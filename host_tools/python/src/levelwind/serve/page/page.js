@@ -359,6 +359,8 @@ async function readParameters() {
 function showParameters() {
   const part = $("filter").value.trim();
   const wanted = parameters.filter((point) => point.name.includes(part) && (!$("differing").checked || differs(point)));
+  const typing = document.activeElement;
+  const [from, to] = [typing.selectionStart, typing.selectionEnd];
   $("parameter-rows").replaceChildren(...wanted.map((point) => {
     const name = document.createElement("span");
     const text = document.createElement("small");
@@ -377,6 +379,12 @@ function showParameters() {
     line.classList.toggle("differs", differs(point));
     return line;
   }));
+  // Who is typing goes on in the new field.
+  const again = typing.dataset?.name && $("parameter-rows").querySelector(`input[data-name=${typing.dataset.name}]`);
+  if (again) {
+    again.focus();
+    again.setSelectionRange(from, to);
+  }
 }
 
 const differs = (point) => point.staged !== point.active || point.active !== point.stored;
