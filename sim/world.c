@@ -202,14 +202,8 @@ static void run_of_transitions(struct lw_world *world, uint64_t until_ns)
 {
 	struct lw_controller *controller = &world->device.controller;
 	struct lw_plant *plant = &world->plant;
-	struct lw_plant_run run = lw_plant_run_begin(plant, until_ns);
+	const struct lw_plant_run run = lw_plant_run_begin(plant, until_ns, UINT32_MAX);
 	const int direction = lw_plant_run_direction(plant);
-	bool index_begins;
-
-	do {
-		index_begins = lw_plant_run_next(&run);
-	} while (!index_begins && lw_plant_run_goes_on(&run));
-
 	const uint32_t together = steps_one_way(controller, run.count) ? run.count : 1;
 
 	for (uint32_t left = run.count; left > 0; left -= together) {
@@ -220,49 +214,54 @@ static void run_of_transitions(struct lw_world *world, uint64_t until_ns)
 	}
 	lw_plant_run_end(plant, &run);
 	world->now_ns = plant->now_ns;
-	if (index_begins) {
+	if (run.index_begins) {
 		lw_controller_encoder_index(controller);
 	}
 }
 
-/** The same for who looks: each transition by itself, as the steps of each are to be seen. */
+/** Transitions to the next one that may give a step, as the drum turns now. */
+static uint32_t transitions_to_step(const struct lw_controller *controller, int direction)
+{
+	return lw_quadrature_goes_on(&controller->quadrature, direction > 0 ? 0 : 1)
+		       ? lw_controller_encoder_reach(controller, direction)
+		       : 1;
+}
+
+/** The same for who looks: up to each step by itself, as the steps of each are to be seen. */
 static void observed_run(struct lw_world *world, uint64_t until_ns)
 {
 	struct lw_controller *controller = &world->device.controller;
 	struct lw_plant *plant = &world->plant;
 	struct lw_world_run *seen = &world->run;
-	struct lw_plant_run run = lw_plant_run_begin(plant, until_ns);
-	const uint64_t begin_ns = plant->substep_ns - LW_PLANT_SUBSTEP_NS;
-	const unsigned int order =
-		lw_plant_run_direction(plant) > 0 ? LW_QUADRATURE_ORDER : ~LW_QUADRATURE_ORDER;
-	unsigned int levels =
-		(unsigned int)plant->pins.encoder_a << 1 | (unsigned int)plant->pins.encoder_b;
+	const struct lw_plant_run run = lw_plant_run_begin(plant, until_ns, LW_WORLD_RUN_MAX);
+	const int direction = lw_plant_run_direction(plant);
 	uint32_t step_count = 0;
-	bool index_begins;
+	uint32_t done = 0;
 
-	do {
-		index_begins = lw_plant_run_next(&run);
-		levels = lw_quadrature_next_levels(levels, order);
+	while (done < run.count) {
+		const uint32_t to_step = transitions_to_step(controller, direction);
+		const uint32_t count = to_step < run.count - done ? to_step : run.count - done;
+		const int edge_steps =
+			lw_controller_encoder_count(controller, direction * (int32_t)count);
 
-		const int edge_steps = lw_controller_encoder(controller, levels >> 1, levels & 1u);
-
+		done += count;
 		if (edge_steps != 0) {
 			const int steps = lw_controller_driver_step(controller, edge_steps);
 
 			lw_plant_step(plant, steps);
-			seen->steps[step_count].time_ns = begin_ns + (uint32_t)run.now_ns;
-			seen->steps[step_count].transition = run.count;
+			seen->steps[step_count].time_ns = lw_plant_run_ns(plant, done);
+			seen->steps[step_count].transition = done;
 			seen->steps[step_count].steps = steps;
 			step_count++;
 		}
-	} while (!index_begins && run.count < LW_WORLD_RUN_MAX && lw_plant_run_goes_on(&run));
+	}
 	seen->direction = plant->drum.direction;
 	seen->count = run.count;
 	seen->step_count = step_count;
 	lw_plant_run_end(plant, &run);
 	world->now_ns = plant->now_ns;
 	world->config.observe_run(world->config.context, seen);
-	if (index_begins) {
+	if (run.index_begins) {
 		lw_controller_encoder_index(controller);
 	}
 }

@@ -175,14 +175,9 @@ static int pins_phase(const struct lw_world *world)
 /** Edges used of those up to a transition; for phase 0 -> 1 of pulse 0 it becomes 1. */
 static int64_t used_edges(int64_t transitions, int32_t edges_per_pulse)
 {
-	switch (edges_per_pulse) {
-	case 1:
-		return (transitions + 3) >> 2;
-	case 2:
-		return (transitions + 1) >> 1;
-	default:
-		return transitions;
-	}
+	const int spacing_log2 = edges_per_pulse == 4 ? 0 : edges_per_pulse == 2 ? 1 : 2;
+
+	return (transitions + (1 << spacing_log2) - 1) >> spacing_log2;
 }
 
 static int64_t true_edges(const struct lw_judge *judge, const struct lw_plant_truth *truth)
@@ -234,10 +229,10 @@ static void check_step(struct lw_judge *judge, enum lw_edge_source source, int s
 	    (judge->blocked_ns == 0 || judge->now_ns - judge->blocked_ns > BLOCKED_NS)) {
 		/* A whole microstep lies between two steps the same way. */
 		const int64_t between = llabs(judge->source_edges[source] - judge->step_edges);
-		const int64_t least = LW_USTEP / judge->screw.ks;
 
-		if (between < least) {
-			broken(judge, LW_INVARIANT_BURST, (double)least - (double)between, 0);
+		if ((between + 1) * judge->screw.ks <= LW_USTEP) {
+			broken(judge, LW_INVARIANT_BURST, (double)between,
+			       (double)LW_USTEP / (double)judge->screw.ks);
 		}
 	}
 	judge->step = step;
@@ -288,12 +283,18 @@ void lw_judge_run(struct lw_judge *judge, const struct lw_world_run *run)
 	const int64_t before = judge->source_edges[LW_EDGE_SOURCE_ENCODER];
 	const int64_t edges =
 		used_edges(from + dd * (int64_t)run->count, judge->edges_per_pulse) - base;
+	/* No switch changes in a run. */
+	const bool blocked = judge->world->plant.pins.overtravel[LW_PLUS] ||
+			     judge->world->plant.pins.overtravel[LW_MINUS];
 
 	for (uint32_t i = 0; i < run->step_count; i++) {
 		const int64_t at = from + dd * (int64_t)run->steps[i].transition;
 		const int64_t to = used_edges(at, judge->edges_per_pulse);
 
-		begin_edge(judge, run->steps[i].time_ns);
+		judge->now_ns = run->steps[i].time_ns;
+		if (blocked) {
+			begin_edge(judge, run->steps[i].time_ns);
+		}
 		judge->source_edges[LW_EDGE_SOURCE_ENCODER] = before + to - base;
 		if (to == used_edges(at - dd, judge->edges_per_pulse)) {
 			broken(judge, LW_INVARIANT_BURST, 1, 0);

@@ -19,6 +19,7 @@
 #define HOLDING_MM_PER_S2              30000
 #define HALF_A_SWEEP_NS                (300 * MS)
 #define FRICTION_DEFLECTS_BELOW_USTEPS 1.0
+#define TWO_PI                         6.283185307179586
 
 static struct rig rig;
 static struct rig_motion motion;
@@ -128,9 +129,89 @@ static void test_the_motor_never_gives_more_than_its_holding_acceleration(void)
 
 		double gained = rig_truth(&rig).carriage_um_per_s - speed_um_per_s;
 
-		/* In 100 us: 3 mm/s, and friction when slowing down. */
-		TEST_ASSERT_DOUBLE_WITHIN(3000.0 + 50.1, 0.0, gained);
+		/* And friction when slowing down. */
+		TEST_ASSERT_DOUBLE_WITHIN((HOLDING_MM_PER_S2 + 501) * 1e-6 * LW_PLANT_SUBSTEP_NS,
+					  0.0, gained);
 		speed_um_per_s += gained;
+	}
+}
+
+/**
+ * A motor by its equation alone, in steps of a microsecond: does it follow a start at once to a
+ * speed? As the plant's default, but for its holding acceleration.
+ */
+static bool follows_by_the_equation(double holding_mm_per_s2, double speed_mm_per_s)
+{
+	const double dt_s = 1e-6;
+	const double holding = holding_mm_per_s2 * 100.0;
+	const double damping_per_s =
+		2.0 * 0.2 * sqrt(holding * TWO_PI / PERIOD_USTEPS); /* omega of small swings */
+	double commanded = 0.0;
+	double x = 0.0;
+	double v = 0.0;
+	double field = 0.0;
+
+	for (double t_s = 0.0; t_s < 0.1; t_s += dt_s) {
+		const double next = floor(speed_mm_per_s * 100.0 * t_s);
+		const double angle = TWO_PI * (next - x) / PERIOD_USTEPS;
+		double pull;
+
+		field += (next - commanded) / 1e-3 - field * dt_s / 1e-3;
+		commanded = next;
+		pull = holding * sin(angle) + damping_per_s * cos(angle) * (field - v);
+		pull = fmin(fmax(pull, -holding), holding) / (1.0 + fabs(v) / 40000.0);
+		v += pull * dt_s;
+		v = copysign(fmax(fabs(v) - 50000.0 * dt_s, 0.0), v);
+		x += v * dt_s;
+		if (fabs(next - x) > PERIOD_USTEPS / 2.0) {
+			return false;
+		}
+	}
+	return true;
+}
+
+static bool plant_follows(double holding_mm_per_s2, double speed_mm_per_s)
+{
+	struct lw_plant_config config;
+
+	lw_plant_config_default(&config);
+	config.holding_acceleration_mm_per_s2 = holding_mm_per_s2;
+	rig_init(&rig, &config);
+	motion = (struct rig_motion){0};
+	rig_command(&rig, &motion, speed_mm_per_s, SUDDENLY_MM_PER_S2, 100 * MS);
+	return rig_truth(&rig).pole_slips == 0;
+}
+
+/** Fastest start that is followed. */
+static double fastest_start_mm_per_s(bool (*follows)(double, double), double holding_mm_per_s2)
+{
+	double least = 0.0;
+	double most = 400.0;
+
+	while (most - least > 0.2) {
+		const double middle = (least + most) / 2.0;
+
+		if (follows(holding_mm_per_s2, middle)) {
+			least = middle;
+		} else {
+			most = middle;
+		}
+	}
+	return least;
+}
+
+/* The length of the plant's substep decides nothing: pull-out is that of the equation. */
+static void test_starts_up_to_the_speed_that_the_equation_tells(void)
+{
+	static const double holdings_mm_per_s2[] = {8000.0, 30000.0, 60000.0};
+
+	for (size_t i = 0; i < sizeof(holdings_mm_per_s2) / sizeof(holdings_mm_per_s2[0]); i++) {
+		const double should =
+			fastest_start_mm_per_s(follows_by_the_equation, holdings_mm_per_s2[i]);
+
+		TEST_ASSERT_DOUBLE_WITHIN(
+			0.0125 * should, should,
+			fastest_start_mm_per_s(plant_follows, holdings_mm_per_s2[i]));
 	}
 }
 
@@ -381,6 +462,7 @@ int main(void)
 	RUN_TEST(test_single_steps_are_followed_and_settle);
 	RUN_TEST(test_a_sudden_start_loses_synchronization);
 	RUN_TEST(test_the_motor_never_gives_more_than_its_holding_acceleration);
+	RUN_TEST(test_starts_up_to_the_speed_that_the_equation_tells);
 	RUN_TEST(test_a_sudden_start_at_low_speed_is_followed);
 	RUN_TEST(test_a_pulled_out_rotor_slips_until_the_field_is_slow);
 	RUN_TEST(test_the_same_load_at_rest_is_held);

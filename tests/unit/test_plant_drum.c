@@ -306,15 +306,12 @@ static int run_in_runs(struct lw_plant *plant, uint64_t until_ns, uint32_t *tran
 			continue;
 		}
 
-		struct lw_plant_run run = lw_plant_run_begin(plant, until_ns);
+		/* Whole, or only the beginning of one. */
+		const struct lw_plant_run run =
+			lw_plant_run_begin(plant, until_ns, *transitions % 3 == 0 ? 2 : UINT32_MAX);
 
-		do {
-			indices += lw_plant_run_next(&run);
-			++*transitions;
-			if (*transitions % 3 == 0) {
-				lw_plant_run_end(plant, &run); /* and it goes on */
-			}
-		} while (lw_plant_run_goes_on(&run));
+		indices += run.index_begins;
+		*transitions += run.count;
 		lw_plant_run_end(plant, &run);
 	}
 	return indices;

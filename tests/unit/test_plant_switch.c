@@ -178,7 +178,8 @@ static void test_fast_carriage_triggers_and_releases_later(void)
 		/* Out and back, still outside of the point of release. */
 		rig_command(&rig, &motion, -200.0 * outward, 16000.0, 26 * MS);
 		um = position_at_change(side, -200.0);
-		TEST_ASSERT_DOUBLE_WITHIN(10.0, LIMIT_UM - HYSTERESIS_UM - 100.0, um);
+		/* It still swings, by up to 21 mm/s, and the shift with it. */
+		TEST_ASSERT_DOUBLE_WITHIN(10.5, LIMIT_UM - HYSTERESIS_UM - 100.0, um);
 		assert_shifted(LIMIT_UM - HYSTERESIS_UM, um);
 
 		/* Later by as much as it is told. */

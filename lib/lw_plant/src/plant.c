@@ -293,7 +293,7 @@ uint32_t lw_plant_advance_to(struct lw_plant *plant, uint64_t until_ns)
 	do {
 		changed = advance(plant);
 	} while (changed == 0 && plant->event_ns <= until_ns &&
-		 plant->drum.transition_ns > plant->event_ns);
+		 (!plant->drum.plain || plant->drum.transition_ns > plant->event_ns));
 	return changed;
 }
 

@@ -21,6 +21,9 @@
 /** A field that is slower stands: the filter's smallest numbers would never go away. */
 #define FIELD_STANDS_USTEPS_PER_S 1e-200
 
+/** Part of the way to its value that a low-pass filter goes in a substep, at any length of it. */
+#define FILTERED(time_constant_s) (1.0 - exp(-SUBSTEP_S / (time_constant_s)))
+
 /** More than any rounding of what is added up in a substep. */
 #define ROUNDING 1e-9
 
@@ -68,6 +71,39 @@ static inline double between(double value, double least, double most)
 	return above < most ? above : most;
 }
 
+/** How far the rotor is behind the nearest place in step with its field. */
+static double lag_usteps(const struct lw_plant_carriage *carriage)
+{
+	return (double)carriage->commanded_usteps - carriage->position_usteps -
+	       (double)carriage->pole * carriage->period_usteps;
+}
+
+/**
+ * Sine and cosine of an angle in electrical periods, from -1/2 to 1/2, to 1e-7: as series, for two
+ * C libraries differ in the last bit, and a launch played elsewhere is to be the same to the bit.
+ */
+static void sine_and_cosine(double periods, double *sine, double *cosine)
+{
+	const bool far_side = fabs(periods) > 0.25;
+	const double angle = TWO_PI * (far_side ? copysign(0.5, periods) - periods : periods);
+	const double square = angle * angle;
+	const double even =
+		1.0 +
+		square * (-1.0 / 2 +
+			  square * (1.0 / 24 +
+				    square * (-1.0 / 720 +
+					      square * (1.0 / 40320 +
+							square * (-1.0 / 3628800 +
+								  square / 479001600)))));
+
+	*sine = angle *
+		(1.0 + square * (-1.0 / 6 +
+				 square * (1.0 / 120 +
+					   square * (-1.0 / 5040 + square * (1.0 / 362880 -
+									     square / 39916800)))));
+	*cosine = far_side ? -even : even;
+}
+
 /**
  * Acceleration by the field. Damping acts through the field too, hence the cosine: it holds the
  * rotor in step, but gives a rotor that slips nothing on average, and never more than the field
@@ -75,17 +111,16 @@ static inline double between(double value, double least, double most)
  */
 static double field_acceleration(const struct lw_plant_carriage *carriage)
 {
-	double lag = (double)carriage->commanded_usteps - carriage->position_usteps -
-		     (double)carriage->pole * carriage->period_usteps;
-	double angle = lag * TWO_PI / carriage->period_usteps;
-	double most = carriage->holding_usteps_per_s2;
-	double pull = most * sin(angle) +
-		      carriage->damping_per_s * cos(angle) *
-			      (carriage->field_usteps_per_s - carriage->speed_usteps_per_s);
+	const double most = carriage->holding_usteps_per_s2;
+	const double speed = fabs(carriage->speed_usteps_per_s);
+	const double left = 1.0 - speed * carriage->top_s_per_ustep;
+	double sine;
+	double cosine;
+	double pull;
 
-	double speed = fabs(carriage->speed_usteps_per_s);
-	double left = 1.0 - speed * carriage->top_s_per_ustep;
-
+	sine_and_cosine(lag_usteps(carriage) / carriage->period_usteps, &sine, &cosine);
+	pull = most * sine + carriage->damping_per_s * cosine *
+				     (carriage->field_usteps_per_s - carriage->speed_usteps_per_s);
 	pull = between(pull, -most, most);
 	return pull * (left > 0.0 ? left : 0.0) /
 	       (1.0 + speed / carriage->half_torque_usteps_per_s);
@@ -99,10 +134,7 @@ int64_t lw_plant_carriage_pole(const struct lw_plant_carriage *carriage, double 
 
 static void count_pole_slips(struct lw_plant_carriage *carriage)
 {
-	double lag = (double)carriage->commanded_usteps - carriage->position_usteps -
-		     (double)carriage->pole * carriage->period_usteps;
-
-	if (fabs(lag) > carriage->period_usteps / 2.0) {
+	if (fabs(lag_usteps(carriage)) > carriage->period_usteps / 2.0) {
 		int64_t pole = lw_plant_carriage_pole(carriage, carriage->position_usteps);
 		int64_t slips = pole - carriage->pole;
 
@@ -120,11 +152,8 @@ static bool friction_holds(const struct lw_plant_carriage *carriage)
 	double most = fabs(carriage->side_load_usteps_per_s2);
 
 	if (carriage->enabled && !carriage->alarm) {
-		const double lag = (double)carriage->commanded_usteps - carriage->position_usteps -
-				   (double)carriage->pole * carriage->period_usteps;
-
 		most += carriage->holding_usteps_per_s2 *
-				fabs(lag * TWO_PI / carriage->period_usteps) +
+				fabs(lag_usteps(carriage) * TWO_PI / carriage->period_usteps) +
 			carriage->damping_per_s * fabs(carriage->field_usteps_per_s);
 	}
 	return most < carriage->friction_usteps_per_s2 * (1.0 - ROUNDING);
@@ -139,8 +168,8 @@ static void slip_coupling(struct lw_plant_carriage *carriage)
 	const double friction = carriage->friction_usteps_per_s2;
 
 	carriage->motor_usteps_per_s +=
-		(carriage->path_usteps_per_s - carriage->motor_usteps_per_s) * SUBSTEP_S /
-		COUPLING_TIME_CONSTANT_S;
+		(carriage->path_usteps_per_s - carriage->motor_usteps_per_s) *
+		FILTERED(COUPLING_TIME_CONSTANT_S);
 
 	const double missing = carriage->motor_usteps_per_s - carriage->screw_usteps_per_s;
 	const bool faster = missing * carriage->screw_usteps_per_s >= 0.0;
@@ -181,7 +210,7 @@ static void move_rotor(struct lw_plant_carriage *carriage, uint64_t begin_ns)
 	carriage->position_usteps += carriage->path_usteps_per_s * SUBSTEP_S;
 	carriage->last_commanded_usteps = carriage->commanded_usteps;
 	carriage->field_usteps_per_s += (steps / SUBSTEP_S - carriage->field_usteps_per_s) *
-					SUBSTEP_S / FIELD_SPEED_TIME_CONSTANT_S;
+					FILTERED(FIELD_SPEED_TIME_CONSTANT_S);
 	if (fabs(carriage->field_usteps_per_s) < FIELD_STANDS_USTEPS_PER_S) {
 		carriage->field_usteps_per_s = 0.0; /* a processor is slow with what comes next */
 	}

@@ -39,6 +39,30 @@ static void wire_encoder(struct lw_plant_drum *drum, const struct lw_plant_confi
 	}
 }
 
+/** What arrives at the pin of a channel. */
+static bool through_wire(const struct lw_plant_drum *drum, int channel, bool level)
+{
+	switch (drum->channel_fault[channel]) {
+	case LW_PLANT_CHANNEL_STUCK_LOW:
+		return false;
+	case LW_PLANT_CHANNEL_STUCK_HIGH:
+		return true;
+	default:
+		return level && !drum->channel_open[channel];
+	}
+}
+
+/** Note what arrives at the pins. A leads B for rising positions: 00, 10, 11, 01. */
+static void note_wires(struct lw_plant_drum *drum)
+{
+	for (unsigned int shown = 0; shown < 4; shown++) {
+		const unsigned int a = through_wire(drum, 0, ((shown ^ shown >> 1) & 1u) != 0);
+		const unsigned int b = through_wire(drum, 1, (shown >> 1 & 1u) != 0);
+
+		drum->levels[shown] = (uint8_t)(a << 1 | b);
+	}
+}
+
 void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config *config)
 {
 	double transitions_per_rev =
@@ -60,6 +84,7 @@ void lw_plant_drum_init(struct lw_plant_drum *drum, const struct lw_plant_config
 		.index_open = config->encoder_index_open,
 	};
 	wire_encoder(drum, config);
+	note_wires(drum);
 	for (int channel = 0; channel < 2; channel++) {
 		if (config->encoder_fault[channel] != LW_PLANT_CHANNEL_OK) {
 			lw_plant_drum_channel(drum, channel, config->encoder_fault[channel], 0);
@@ -116,9 +141,10 @@ static double next_speed_milli_rpm(struct lw_plant_drum *drum, uint64_t begin_ns
 
 static void plan_transition(struct lw_plant_drum *drum, uint64_t begin_ns)
 {
-	drum->transition_ns = drum->offset_ns < LW_PLANT_SUBSTEP_NS
-				      ? begin_ns + (uint32_t)drum->offset_ns
-				      : LW_PLANT_NEVER_NS;
+	const double next_ns = lw_plant_transition_ns(drum, drum->passed);
+
+	drum->transition_ns = next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)next_ns
+							    : LW_PLANT_NEVER_NS;
 }
 
 void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
@@ -126,7 +152,8 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 	double end_milli_rpm = next_speed_milli_rpm(drum, begin_ns);
 	double mean_milli_rpm = (drum->speed_milli_rpm + end_milli_rpm) / 2.0;
 
-	drum->fraction += drum->moved_transitions;
+	drum->fraction += drum->moved_transitions - drum->direction * (double)drum->passed;
+	drum->passed = 0;
 	drum->speed_milli_rpm = end_milli_rpm;
 	drum->moved_transitions = mean_milli_rpm * drum->transitions_per_milli_rpm_s * SUBSTEP_S;
 	if (drum->moved_transitions == 0.0) {
@@ -142,32 +169,19 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 	}
 	drum->direction = forward ? 1 : -1;
 	drum->period_ns = LW_PLANT_SUBSTEP_NS / fabs(drum->moved_transitions);
-	drum->offset_ns = missing * drum->period_ns;
+	drum->per_ns = fabs(drum->moved_transitions) / LW_PLANT_SUBSTEP_NS;
+	drum->first_ns = missing * drum->period_ns;
 	plan_transition(drum, begin_ns);
 }
 
-/** What arrives at the pin of a channel. */
-static bool through_wire(const struct lw_plant_drum *drum, int channel, bool level)
-{
-	switch (drum->channel_fault[channel]) {
-	case LW_PLANT_CHANNEL_STUCK_LOW:
-		return false;
-	case LW_PLANT_CHANNEL_STUCK_HIGH:
-		return true;
-	default:
-		return level && !drum->channel_open[channel];
-	}
-}
-
-/** A leads B for rising positions: 00, 10, 11, 01. */
 static uint32_t show(struct lw_plant *plant, int64_t transitions)
 {
 	const struct lw_plant_drum *drum = &plant->drum;
 	uint32_t shown = (uint32_t)(drum->wired_direction * (transitions + drum->extra_transitions +
 							     drum->dithered) +
 				    drum->wired_offset);
-	bool a = through_wire(drum, 0, ((shown ^ (shown >> 1)) & 1u) != 0);
-	bool b = through_wire(drum, 1, ((shown >> 1) & 1u) != 0);
+	bool a = drum->levels[shown & 3u] >> 1;
+	bool b = drum->levels[shown & 3u] & 1u;
 	uint32_t changed = 0;
 
 	if (a != plant->pins.encoder_a) {
@@ -231,8 +245,7 @@ uint32_t lw_plant_drum_transition(struct lw_plant *plant)
 	struct lw_plant_drum *drum = &plant->drum;
 
 	drum->transitions += drum->direction;
-	drum->fraction -= drum->direction;
-	drum->offset_ns += drum->period_ns;
+	drum->passed++;
 	plan_transition(drum, substep_begin_ns(plant));
 	return show(plant, shown_transitions(drum)) | pass_index(plant);
 }
@@ -264,6 +277,7 @@ void lw_plant_drum_channel(struct lw_plant_drum *drum, int channel, uint8_t faul
 				   ? now_ns
 				   : LW_PLANT_NEVER_NS;
 	drum->wires_changed = true;
+	note_wires(drum);
 }
 
 void lw_plant_drum_show(struct lw_plant *plant)
@@ -283,6 +297,7 @@ uint32_t lw_plant_drum_wires(struct lw_plant *plant)
 				drum->channel_fault[channel] == LW_PLANT_CHANNEL_FLICKER &&
 				!drum->channel_open[channel];
 		}
+		note_wires(drum);
 	} else if (!drum->wires_changed) {
 		return 0;
 	}
