@@ -266,30 +266,36 @@ static void observed_run(struct lw_world *world, uint64_t until_ns)
 	}
 }
 
+/** The plant's events up to a time; between two of its own nothing else happens. */
+static void run_plant(struct lw_world *world, uint64_t until_ns)
+{
+	while (lw_plant_next_event_ns(&world->plant) <= until_ns) {
+		if (!lw_plant_next_is_run(&world->plant, until_ns)) {
+			plant_event(world, until_ns);
+		} else if (world->config.observe_run == NULL) {
+			run_of_transitions(world, until_ns);
+		} else {
+			observed_run(world, until_ns);
+		}
+	}
+}
+
 void lw_world_run(struct lw_world *world, uint64_t until_ns)
 {
 	for (;;) {
-		const uint64_t plant_ns = lw_plant_next_event_ns(&world->plant);
 		const uint64_t own_ns =
 			world->timer_ns < world->tick_ns ? world->timer_ns : world->tick_ns;
 
-		const uint64_t last_ns = own_ns < until_ns ? own_ns : until_ns;
-
-		if ((plant_ns < own_ns ? plant_ns : own_ns) > until_ns) {
+		run_plant(world, own_ns < until_ns ? own_ns : until_ns);
+		if (own_ns > until_ns) {
 			break;
 		}
-		if (lw_plant_next_is_run(&world->plant, last_ns)) {
-			(world->config.observe_run == NULL ? run_of_transitions
-							   : observed_run)(world, last_ns);
-		} else if (plant_ns <= own_ns) {
-			plant_event(world, last_ns);
-		} else if (world->timer_ns <= world->tick_ns) {
-			world->now_ns = world->timer_ns;
+		world->now_ns = own_ns;
+		if (world->timer_ns <= world->tick_ns) {
 			world->timer_ns += 1000000000u / world->timer_rate_edges_per_s;
 			edge(world, LW_EDGE_SOURCE_TIMER,
 			     lw_controller_timer_edge(&world->device.controller));
 		} else {
-			world->now_ns = world->tick_ns;
 			world->tick_ns += TICK_NS;
 			tick(world);
 		}

@@ -196,12 +196,8 @@ static int pins_edge(struct lw_judge *judge)
 	if (moved == 2 || moved == 0) {
 		return 0; /* both channels at once say nothing about the direction */
 	}
-
-	const int dd = moved == 1 ? 1 : -1;
-	const int64_t from = 4 + before;
-
-	return (int)(used_edges(from + dd, judge->edges_per_pulse) -
-		     used_edges(from, judge->edges_per_pulse));
+	return (int)(used_edges(4 + before + (moved == 1 ? 1 : -1), judge->edges_per_pulse) -
+		     used_edges(4 + before, judge->edges_per_pulse));
 }
 
 static void check_step(struct lw_judge *judge, enum lw_edge_source source, int step)
@@ -240,15 +236,26 @@ static void check_step(struct lw_judge *judge, enum lw_edge_source source, int s
 	judge->step_edges = judge->source_edges[source];
 }
 
+/** Is an overtravel switch actuated? */
+static bool is_blocked(const struct lw_judge *judge)
+{
+	const struct lw_plant_pins *pins = &judge->world->plant.pins;
+
+	return pins->overtravel[LW_PLUS] || pins->overtravel[LW_MINUS];
+}
+
 /** Something happens at this time. */
 static void begin_edge(struct lw_judge *judge, uint64_t now_ns)
 {
+	const struct lw_plant_pins *pins = &judge->world->plant.pins;
+
 	judge->now_ns = now_ns;
+	if (is_blocked(judge)) {
+		judge->blocked_ns = now_ns;
+	}
 	for (int side = 0; side < 2; side++) {
-		if (!judge->world->plant.pins.overtravel[side]) {
+		if (!pins->overtravel[side]) {
 			judge->overtravel_ns[side] = now_ns;
-		} else {
-			judge->blocked_ns = now_ns;
 		}
 	}
 }
@@ -284,8 +291,7 @@ void lw_judge_run(struct lw_judge *judge, const struct lw_world_run *run)
 	const int64_t edges =
 		used_edges(from + dd * (int64_t)run->count, judge->edges_per_pulse) - base;
 	/* No switch changes in a run. */
-	const bool blocked = judge->world->plant.pins.overtravel[LW_PLUS] ||
-			     judge->world->plant.pins.overtravel[LW_MINUS];
+	const bool blocked = is_blocked(judge);
 
 	for (uint32_t i = 0; i < run->step_count; i++) {
 		const int64_t at = from + dd * (int64_t)run->steps[i].transition;

@@ -151,25 +151,28 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 {
 	double end_milli_rpm = next_speed_milli_rpm(drum, begin_ns);
 	double mean_milli_rpm = (drum->speed_milli_rpm + end_milli_rpm) / 2.0;
+	double moves = mean_milli_rpm * drum->transitions_per_milli_rpm_s * SUBSTEP_S;
 
 	drum->fraction += drum->moved_transitions - drum->direction * (double)drum->passed;
 	drum->passed = 0;
 	drum->speed_milli_rpm = end_milli_rpm;
-	drum->moved_transitions = mean_milli_rpm * drum->transitions_per_milli_rpm_s * SUBSTEP_S;
-	if (drum->moved_transitions == 0.0) {
+	if (moves == 0.0) {
+		drum->moved_transitions = 0.0;
 		drum->transition_ns = LW_PLANT_NEVER_NS;
 		return;
 	}
+	if (moves != drum->moved_transitions) {
+		drum->moved_transitions = moves;
+		drum->direction = moves > 0.0 ? 1 : -1;
+		drum->period_ns = LW_PLANT_SUBSTEP_NS / fabs(moves);
+		drum->per_ns = fabs(moves) / LW_PLANT_SUBSTEP_NS;
+	}
 
-	bool forward = drum->moved_transitions > 0.0;
-	double missing = forward ? 1.0 - drum->fraction : drum->fraction;
+	double missing = moves > 0.0 ? 1.0 - drum->fraction : drum->fraction;
 
 	if (missing < 0.0) {
 		missing = 0.0; /* the last substep's have missed its end by a rounding error */
 	}
-	drum->direction = forward ? 1 : -1;
-	drum->period_ns = LW_PLANT_SUBSTEP_NS / fabs(drum->moved_transitions);
-	drum->per_ns = fabs(drum->moved_transitions) / LW_PLANT_SUBSTEP_NS;
 	drum->first_ns = missing * drum->period_ns;
 	plan_transition(drum, begin_ns);
 }
@@ -177,19 +180,15 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 static uint32_t show(struct lw_plant *plant, int64_t transitions)
 {
 	const struct lw_plant_drum *drum = &plant->drum;
-	uint32_t shown = (uint32_t)(drum->wired_direction * (transitions + drum->extra_transitions +
-							     drum->dithered) +
-				    drum->wired_offset);
-	bool a = drum->levels[shown & 3u] >> 1;
-	bool b = drum->levels[shown & 3u] & 1u;
-	uint32_t changed = 0;
+	const uint32_t shown =
+		(uint32_t)(drum->wired_direction * (transitions + drum->extra_transitions +
+						    drum->dithered) +
+			   drum->wired_offset);
+	const bool a = drum->levels[shown & 3u] >> 1;
+	const bool b = drum->levels[shown & 3u] & 1u;
+	const uint32_t changed = (a != plant->pins.encoder_a ? LW_PLANT_ENCODER_A : 0) |
+				 (b != plant->pins.encoder_b ? LW_PLANT_ENCODER_B : 0);
 
-	if (a != plant->pins.encoder_a) {
-		changed |= LW_PLANT_ENCODER_A;
-	}
-	if (b != plant->pins.encoder_b) {
-		changed |= LW_PLANT_ENCODER_B;
-	}
 	plant->pins.encoder_a = a;
 	plant->pins.encoder_b = b;
 	return changed;
