@@ -439,6 +439,14 @@ static void test_by_itself_only_within_a_launch_that_was_kept(void)
 	TEST_ASSERT_EQUAL_INT(LW_STATE_REACQUIRING, rig.controller->state);
 	check_reacquired();
 
+	/* What is disturbed in a launch is set right before long. */
+	kept.seal ^= 1;
+	rig_ticks(LW_SET_COPY_TICKS);
+	restart();
+	rig_ticks(320);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_REACQUIRING, rig.controller->state);
+	check_reacquired();
+
 	/* Not where the memory was lost, was never there, or has been disturbed. */
 	for (int how = 0; how < 3; how++) {
 		if (how == 0) {

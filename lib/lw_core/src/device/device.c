@@ -172,9 +172,10 @@ void lw_device_tick(struct lw_device *device, uint64_t now_us)
 {
 	const uint64_t timeout_us = (uint64_t)device->active.master_timeout_ms * 1000;
 	const uint64_t elapsed_us = now_us - device->now_us;
+	const bool looks_at_memory = lw_set_copy_due(&device->set_copy);
 
 	device->now_us = now_us;
-	if (lw_set_copy_due(&device->set_copy) && mend_memory(device)) {
+	if (looks_at_memory && mend_memory(device)) {
 		lw_device_log(device, LW_EVENT_MEMORY_CORRECTED, device->set_copy.corrections);
 	}
 	if (device->slave.last_request_us != device->heard_request_us) {
@@ -193,5 +194,5 @@ void lw_device_tick(struct lw_device *device, uint64_t now_us)
 	lw_device_log_changes(device);
 	lw_device_keep_journal(device, elapsed_us);
 	lw_device_keep_look(device);
-	lw_device_keep_launch(device);
+	lw_device_keep_launch(device, looks_at_memory);
 }

@@ -105,8 +105,9 @@ void lw_device_restore_look(struct lw_device *device);
 /** Power up: was this a restart in a launch? */
 void lw_device_restore_launch(struct lw_device *device);
 
-/** Keep whether a launch is under way, and in which direction the carriage goes. Every tick. */
-void lw_device_keep_launch(struct lw_device *device);
+/** Keep whether a launch is under way, and in which direction the carriage goes. Every tick.
+ *  @param looks_at_memory seal it anew, too, if something has disturbed it */
+void lw_device_keep_launch(struct lw_device *device, bool looks_at_memory);
 
 /* look.c */
 

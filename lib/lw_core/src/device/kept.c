@@ -29,7 +29,7 @@ void lw_device_restore_launch(struct lw_device *device)
 	reacquire->wanted = device->active.reacquire_after_restart != 0;
 }
 
-void lw_device_keep_launch(struct lw_device *device)
+void lw_device_keep_launch(struct lw_device *device, bool looks_at_memory)
 {
 	const struct lw_controller *controller = &device->controller;
 	struct lw_kept *kept = device->config->kept;
@@ -48,7 +48,7 @@ void lw_device_keep_launch(struct lw_device *device)
 		now.direction = u > 0 ? 1 : -1;
 	}
 	if (now.launch != kept->launch || now.direction != kept->direction ||
-	    kept->seal != seal_of(kept)) {
+	    (looks_at_memory && kept->seal != seal_of(kept))) {
 		now.seal = seal_of(&now);
 		*kept = now;
 	}
