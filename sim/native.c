@@ -406,6 +406,9 @@ const struct lw_layout lw_layout_native[] = {
 	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_ENCODER_INDEX),
 	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_BLIP_PLUS),
 	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_BLIP_MINUS),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_TRIM_EARLY),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_TRIM_LATE),
+	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_SWITCH_LATE),
 	LW_LAYOUT_VALUE(lw_plant_fault, LW_PLANT_FAULT_COUNT),
 	{0},
 };

@@ -62,6 +62,9 @@ class PlantFault(IntEnum):
     ENCODER_INDEX = 17
     BLIP_PLUS_US = 18
     BLIP_MINUS_US = 19
+    TRIM_EARLY = 20
+    TRIM_LATE = 21
+    SWITCH_LATE_US = 22
 
 
 class Truth(ctypes.Structure):

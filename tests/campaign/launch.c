@@ -221,8 +221,21 @@ static void tell_judge(struct player *player, enum lw_plant_fault fault, int32_t
 	case LW_PLANT_FAULT_CARRIAGE_REVERSED:
 		judge->motor_reversed = argument != 0;
 		break;
-	default:
-		break;
+	case LW_PLANT_FAULT_STALL:
+	case LW_PLANT_FAULT_SLIP:
+	case LW_PLANT_FAULT_SIDE_LOAD:
+	case LW_PLANT_FAULT_OVERTRAVEL_PLUS:
+	case LW_PLANT_FAULT_OVERTRAVEL_MINUS:
+	case LW_PLANT_FAULT_ENCODER_DITHER:
+	case LW_PLANT_FAULT_PLACE_CARRIAGE:
+	case LW_PLANT_FAULT_STEPPER_ALARM:
+	case LW_PLANT_FAULT_BLIP_PLUS:
+	case LW_PLANT_FAULT_BLIP_MINUS:
+	case LW_PLANT_FAULT_TRIM_EARLY:
+	case LW_PLANT_FAULT_TRIM_LATE:
+	case LW_PLANT_FAULT_SWITCH_LATE:
+	case LW_PLANT_FAULT_COUNT:
+		break; /* nothing that it does not see */
 	}
 }
 

@@ -70,3 +70,11 @@ def test_a_member_that_the_librarys_list_forgets_leaves_a_gap():
     assert said == "has bytes 4 to 7 that its list of members does not name"
     padded = {"": (0, 16), "a": (0, 1), "b": (8, 8)}
     assert layout._struct_difference(padded, dict(padded)) == ""
+
+
+def test_an_enumerations_list_that_forgets_a_value_is_told():
+    compiled = {"LW_X_A": (0, 0), "LW_X_B": (1, 0), "LW_X_COUNT": (3, 0)}
+    copy = IntEnum("Copy", {"A": 0, "B": 1})
+    said = layout._enum_difference(compiled, copy)
+    assert said == "has 3 values, of which its list names 2"
+    assert layout._enum_difference(compiled | {"LW_X_COUNT": (2, 0)}, copy) == ""

@@ -468,8 +468,14 @@ static const struct levelwind_value flags_values[] = {
 		8, "los1_minus",
 		"LOS type 1-: reversal at minus entered, its switch did not trigger on the way",
 	},
-	{9, "los2_plus", "LOS type 2+: plus switch triggered outside its tolerance"},
-	{10, "los2_minus", "LOS type 2-: minus switch triggered outside its tolerance"},
+	{
+		9, "los2_plus",
+		"LOS type 2+: plus switch triggered outside its tolerance, or memory had changed the law",
+	},
+	{
+		10, "los2_minus",
+		"LOS type 2-: minus switch triggered outside its tolerance, or memory had changed the law",
+	},
 	{11, "switch_plus", "Plus limit switch actuated (debounced)"},
 	{12, "switch_minus", "Minus limit switch actuated (debounced)"},
 	{13, "wiring_plus", "Plus limit switch wiring fault"},

@@ -908,8 +908,16 @@ class Flag(MapEnum):
         "los1_minus",
         "LOS type 1-: reversal at minus entered, its switch did not trigger on the way",
     )
-    LOS2_PLUS = 9, "los2_plus", "LOS type 2+: plus switch triggered outside its tolerance"
-    LOS2_MINUS = 10, "los2_minus", "LOS type 2-: minus switch triggered outside its tolerance"
+    LOS2_PLUS = (
+        9,
+        "los2_plus",
+        "LOS type 2+: plus switch triggered outside its tolerance, or memory had changed the law",
+    )
+    LOS2_MINUS = (
+        10,
+        "los2_minus",
+        "LOS type 2-: minus switch triggered outside its tolerance, or memory had changed the law",
+    )
     SWITCH_PLUS = 11, "switch_plus", "Plus limit switch actuated (debounced)"
     SWITCH_MINUS = 12, "switch_minus", "Minus limit switch actuated (debounced)"
     WIRING_PLUS = 13, "wiring_plus", "Plus limit switch wiring fault"
@@ -1384,7 +1392,7 @@ POINTS: dict[str, Point] = {
             address=9,
             space="discrete",
             type="bit",
-            text="LOS type 2+: plus switch triggered outside its tolerance",
+            text="LOS type 2+: plus switch triggered outside its tolerance, or memory had changed the law",
             block="discretes",
         ),
         Point(
@@ -1392,7 +1400,7 @@ POINTS: dict[str, Point] = {
             address=10,
             space="discrete",
             type="bit",
-            text="LOS type 2-: minus switch triggered outside its tolerance",
+            text="LOS type 2-: minus switch triggered outside its tolerance, or memory had changed the law",
             block="discretes",
         ),
         Point(

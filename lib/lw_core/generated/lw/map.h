@@ -844,9 +844,13 @@ enum lw_flag {
 	LW_FLAG_LOS1_PLUS = 7,
 	/** LOS type 1-: reversal at minus entered, its switch did not trigger on the way */
 	LW_FLAG_LOS1_MINUS = 8,
-	/** LOS type 2+: plus switch triggered outside its tolerance */
+	/**
+	 * LOS type 2+: plus switch triggered outside its tolerance, or memory had changed the law
+	 */
 	LW_FLAG_LOS2_PLUS = 9,
-	/** LOS type 2-: minus switch triggered outside its tolerance */
+	/**
+	 * LOS type 2-: minus switch triggered outside its tolerance, or memory had changed the law
+	 */
 	LW_FLAG_LOS2_MINUS = 10,
 	/** Plus limit switch actuated (debounced) */
 	LW_FLAG_SWITCH_PLUS = 11,

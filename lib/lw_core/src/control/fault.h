@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /**
  * @file
- * Faults (enum lw_fault): the carriage stops by one, and goes on when it has been acknowledged. Who
- * finds a fault is the file of the motion, or controller.c. Not for interrupt context.
+ * Faults: the carriage stops by one, and goes on when it has been acknowledged. Their list is the
+ * enum `fault` of modbus_map/registers.yaml; who finds one is the file of the motion, or
+ * controller.c. Not for interrupt context.
  */
 #ifndef LW_FAULT_H
 #define LW_FAULT_H

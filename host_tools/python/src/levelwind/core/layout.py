@@ -108,11 +108,14 @@ def _enum_difference(compiled: Members, copy: type[IntEnum]) -> str:
     words = [name.split("_") for name in compiled]
     same = itertools.takewhile(lambda column: len(set(column)) == 1, zip(*words, strict=False))
     prefix = "_".join(column[0] for column in same) + "_"
+    counts = {value for name, (value, _) in compiled.items() if name.endswith("_COUNT")}
     values = {
         value: name.removeprefix(prefix)
         for name, (value, _) in compiled.items()
         if not name.endswith("_COUNT")
     }
+    for count in counts - {len(values)}:
+        return f"has {count} values, of which its list names {len(values)}"
     for value in sorted(values.keys() | {int(member) for member in copy}):
         ours = copy(value).name if value in {int(member) for member in copy} else None
         if value not in values:

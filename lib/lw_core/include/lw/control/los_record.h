@@ -2,7 +2,7 @@
 /**
  * @file
  * Losses of synchronization: what is kept of them. los_judge.c judges the switches, the drum watch
- * the encoder. Not for interrupt context.
+ * the encoder, lw_controller_mend_law() the law in memory. Not for interrupt context.
  */
 #ifndef LW_LOS_RECORD_H
 #define LW_LOS_RECORD_H
@@ -22,7 +22,8 @@ struct lw_los_record {
 /** All of them. Read by status, journal and device/look.c. */
 struct lw_los {
 	struct lw_los_record los1[2]; /**< by side: the switch of a reversal did not trigger */
-	struct lw_los_record los2[2]; /**< by side: it triggered where it is not */
+	struct lw_los_record los2[2]; /**< by side: it triggered where it is not, or the
+				       *   law had changed by itself on the way to it */
 	struct lw_los_record encoder; /**< the drum turned unseen: drum_watch.fault */
 	/** The carriage took up a turning drum from rest; written by reacquire.c. */
 	struct lw_los_record reacquired;
