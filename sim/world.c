@@ -150,9 +150,12 @@ static void tick(struct lw_world *world)
 
 static void edge(struct lw_world *world, enum lw_edge_source source, int steps)
 {
-	const int driver_steps = lw_controller_driver_step(&world->device.controller, steps);
+	int driver_steps = 0;
 
-	lw_plant_step(&world->plant, driver_steps);
+	if (steps != 0) {
+		driver_steps = lw_controller_driver_step(&world->device.controller, steps);
+		lw_plant_step(&world->plant, driver_steps);
+	}
 	if (world->config.observe_edge != NULL) {
 		world->config.observe_edge(world->config.context, source, driver_steps);
 	}

@@ -191,16 +191,17 @@ static int pins_edge(struct lw_judge *judge)
 	const int before = judge->phase;
 	const int phase = pins_phase(judge->world);
 	const int moved = (phase - before) & 3;
+	const int dd = moved == 1 ? 1 : -1;
+	const int behind = dd > 0 ? before : phase; /* the transition's backward end */
 
 	judge->phase = phase;
 	if (moved == 2 || moved == 0) {
 		return 0; /* both channels at once say nothing about the direction */
 	}
-	return (int)(used_edges(4 + before + (moved == 1 ? 1 : -1), judge->edges_per_pulse) -
-		     used_edges(4 + before, judge->edges_per_pulse));
+	return behind % (4 / judge->edges_per_pulse) == 0 ? dd : 0;
 }
 
-static void check_step(struct lw_judge *judge, enum lw_edge_source source, int step)
+static inline void check_step(struct lw_judge *judge, enum lw_edge_source source, int step)
 {
 	const struct lw_world *world = judge->world;
 	const int direction = judge->motor_reversed ? -step : step;

@@ -177,7 +177,7 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 	plan_transition(drum, begin_ns);
 }
 
-static uint32_t show(struct lw_plant *plant, int64_t transitions)
+static inline uint32_t show(struct lw_plant *plant, int64_t transitions)
 {
 	const struct lw_plant_drum *drum = &plant->drum;
 	const uint32_t shown =
@@ -198,7 +198,7 @@ static uint32_t show(struct lw_plant *plant, int64_t transitions)
  * While a fault hides transitions the pins hold a past position, until the drum is a whole number
  * of pulses (nothing to see), or two transitions (both channels change), away from it.
  */
-static int64_t shown_transitions(struct lw_plant_drum *drum)
+static inline int64_t shown_transitions(struct lw_plant_drum *drum)
 {
 	if (drum->lose_pulses == 0 && drum->illegal_changes == 0) {
 		return drum->transitions;
