@@ -859,6 +859,54 @@ static void test_a_law_that_was_changed_is_mended_and_told(void)
 	}
 }
 
+/** A state that rests, and edges that go on moving the carriage: one of both is not true. */
+static void test_what_moves_in_a_state_of_rest_is_stopped_and_not_known_any_more(void)
+{
+	static const struct {
+		uint32_t state;
+		bool indexed;
+		uint32_t then;
+	} states[] = {
+		{LW_STATE_READY, true, LW_STATE_UNINDEXED},
+		{LW_STATE_CENTRED, true, LW_STATE_UNINDEXED},
+		{LW_STATE_UNINDEXED, false, LW_STATE_UNINDEXED},
+		{LW_STATE_OFF, false, LW_STATE_OFF},
+		{LW_STATE_FAULT, false, LW_STATE_FAULT},
+	};
+
+	for (size_t i = 0; i < sizeof(states) / sizeof(states[0]); i++) {
+		for (int source = LW_EDGE_SOURCE_ENCODER; source <= LW_EDGE_SOURCE_TIMER;
+		     source++) {
+			rig_prepare(0);
+			rig_track();
+			TEST_ASSERT_FALSE(lw_controller_mend_rest(rig.controller));
+			rig.controller->state = states[i].state;
+			rig.controller->indexed = states[i].indexed;
+			lw_motion_set_source(&rig.controller->motion, (enum lw_edge_source)source);
+			TEST_ASSERT_TRUE(lw_controller_mend_rest(rig.controller));
+			TEST_ASSERT_FALSE(lw_controller_mend_rest(rig.controller));
+			TEST_ASSERT_EQUAL_INT(states[i].then, rig.controller->state);
+			TEST_ASSERT_FALSE(rig.controller->indexed);
+			TEST_ASSERT_EQUAL_INT(LW_EDGE_SOURCE_NONE, rig.controller->motion.source);
+		}
+	}
+}
+
+static void test_no_motion_is_taken_for_one_in_a_state_of_rest(void)
+{
+	static const uint32_t states[] = {LW_STATE_TRACKING, LW_STATE_REACQUIRING, LW_STATE_SEEKING,
+					  LW_STATE_BACKING_OFF, LW_STATE_PARKING,
+					  LW_STATE_CENTRING, LW_STATE_JOGGING};
+
+	for (size_t i = 0; i < sizeof(states) / sizeof(states[0]); i++) {
+		rig_prepare(0);
+		rig_track();
+		rig.controller->state = states[i];
+		TEST_ASSERT_FALSE(lw_controller_mend_rest(rig.controller));
+		TEST_ASSERT_EQUAL_INT(LW_EDGE_SOURCE_ENCODER, rig.controller->motion.source);
+	}
+}
+
 static void test_what_has_ended_can_be_acknowledged(void)
 {
 	static const enum lw_fault ended[] = {LW_FAULT_INDEX_NO_SWITCH,
@@ -934,6 +982,8 @@ int main(void)
 	RUN_TEST(test_jog_of_an_indexed_carriage_ends_two_microsteps_inside_and_goes_no_farther);
 	RUN_TEST(test_a_long_hold_of_a_jog_is_exact);
 	RUN_TEST(test_a_law_that_was_changed_is_mended_and_told);
+	RUN_TEST(test_what_moves_in_a_state_of_rest_is_stopped_and_not_known_any_more);
+	RUN_TEST(test_no_motion_is_taken_for_one_in_a_state_of_rest);
 	RUN_TEST(test_what_has_ended_can_be_acknowledged);
 	return UNITY_END();
 }

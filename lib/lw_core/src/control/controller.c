@@ -586,6 +586,21 @@ bool lw_controller_mend_law(struct lw_controller *controller)
 	return true;
 }
 
+bool lw_controller_mend_rest(struct lw_controller *controller)
+{
+	if (controller->motion.source == LW_EDGE_SOURCE_NONE || lw_controller_follows(controller) ||
+	    lw_controller_moving(controller)) {
+		return false;
+	}
+	/* As by a stop from full speed, the stepper loses steps. */
+	lw_carriage_cut(controller);
+	if (controller->indexed) {
+		controller->indexed = false;
+		controller->state = LW_STATE_UNINDEXED;
+	}
+	return true;
+}
+
 /** Take up the drum by itself after a restart in a launch. */
 static void reacquire_by_itself(struct lw_controller *controller)
 {

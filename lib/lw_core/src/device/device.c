@@ -175,6 +175,10 @@ void lw_device_tick(struct lw_device *device, uint64_t now_us)
 	const bool looks_at_memory = lw_set_copy_due(&device->set_copy);
 
 	device->now_us = now_us;
+	if (lw_controller_mend_rest(&device->controller)) {
+		lw_set_copy_count(&device->set_copy);
+		lw_device_log(device, LW_EVENT_MEMORY_CORRECTED, device->set_copy.corrections);
+	}
 	if (looks_at_memory && mend_memory(device)) {
 		lw_device_log(device, LW_EVENT_MEMORY_CORRECTED, device->set_copy.corrections);
 	}

@@ -205,6 +205,14 @@ void lw_controller_tick(struct lw_controller *controller, uint64_t now_us);
  */
 bool lw_controller_mend_law(struct lw_controller *controller);
 
+/**
+ * Does the carriage rest in a state of rest? By a flipped bit edges may move it there, unasked and
+ * watched by nobody: it is stopped, and its index is lost. For the supervisor, before every tick.
+ *
+ * @return it did not
+ */
+bool lw_controller_mend_rest(struct lw_controller *controller);
+
 /** Rate of the edge timer that the controller wants, edges per second; 0: off. */
 uint32_t lw_controller_timer_rate_edges_per_s(const struct lw_controller *controller);
 
