@@ -12,6 +12,10 @@ from board.machine import CHANNEL_A, CHANNEL_B, IRQ0, Board, available
 from board.ready import indexed
 
 pytestmark = pytest.mark.skipif(bool(available()), reason=available())
+pytest.importorskip("elftools.elf.elffile", reason="pyelftools is not installed")
+
+from board.injection import LIVE_COUNT, NC  # noqa: E402
+from board.operations import READ_LIVE  # noqa: E402
 
 FLASH = 0x40023C00
 KEYS = (0x45670123, 0xCDEF89AB)
@@ -24,7 +28,9 @@ TOP_S = float(os.environ.get("LEVELWIND_TOP_SPEED_S", "0.5"))
 LIVE = ("state", "flags", "m", "u", "pattern_edges", "position_usteps")
 LATENCIES = [(1000, 0), (1300, 125)]
 ENCODER = IRQ0 + 28
+SWITCHES = IRQ0 + 23  # lines 5 to 9: one contact of each switch
 REVERSAL_EDGES_PER_S = 400
+POLLS, BOUNCES, BOUNCE_S = 20, 250, 20e-6
 
 
 def erase(board: Board) -> None:
@@ -69,6 +75,35 @@ def test_none_is_lost_at_full_speed_with_an_erasure_in_the_middle(
         "missed_edges": 0,
         "illegal_transitions": 0,
     }
+
+
+@pytest.mark.parametrize(("cycles_permille", "phase_error_permille"), LATENCIES)
+def test_none_is_lost_at_full_speed_while_switches_bounce_and_modbus_is_polled(
+    cycles_permille: int, phase_error_permille: int
+):
+    """A loose contact of either limit switch interrupts as often as every other edge."""
+    board = indexed(
+        baud=115_200, cycles_permille=cycles_permille, phase_error_permille=phase_error_permille
+    )
+    orbit = board.orbit()
+    before = counts(board)
+    board.drum(EDGES_PER_S, 480_000)
+    board.run(0.3)
+    answers = b""
+    for poll in range(POLLS):
+        board.send(READ_LIVE)
+        for _ in range(BOUNCES):
+            board.drive(NC[poll % 2], None)
+            board.run(BOUNCE_S)
+            board.drive(NC[poll % 2], 0)
+            board.run(BOUNCE_S)
+        answers += bytes(byte.value for byte in board.heard())
+    assert len(answers) == POLLS * (5 + 2 * LIVE_COUNT)
+    assert board.costs()[SWITCHES].count > POLLS * BOUNCES
+    board.stop_drum()
+    assert lost_edges(board, before) == 0
+    board.check_follows(orbit)
+    assert board.state == State.TRACKING
 
 
 def test_a_drum_that_is_slow_enough_is_followed_through_an_erasure():
