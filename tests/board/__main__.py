@@ -183,10 +183,10 @@ def print_interrupts(board: Board) -> None:
     print_table(("interrupt", "times", "min", "average", "max instructions"), rows)
 
 
-def stay(storage: bytes, port: Path) -> None:
+def stay(flash: bytes, port: Path) -> None:
     """Power the board up again with what it has stored, in real time, until Ctrl-C."""
-    file = port.with_name("board_storage.bin")
-    file.write_bytes(storage)
+    file = port.with_name("board_flash.bin")
+    file.write_bytes(flash)
     command = [sys.executable, "-m", "board.serve", "--port", str(port), "--storage", str(file)]
     console.print(
         f"\nThe board runs again, in real time, with what it has stored. Connect an HMI or PLC to\n"
@@ -241,7 +241,7 @@ def main() -> int:
     if board.complaints:
         console.print("Against the manual:\n" + board.complaints.rstrip())
     if given.stay:
-        stay(board.stored, port)
+        stay(board.flash.raw, port)
     return 0 if all(e.held is not False for e in expectations) else 1
 
 

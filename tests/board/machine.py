@@ -3,10 +3,12 @@
 
 import ctypes
 import functools
+import mmap
 import os
 from ctypes import (
     POINTER,
     c_bool,
+    c_char,
     c_char_p,
     c_int,
     c_int32,
@@ -36,6 +38,7 @@ STORAGE, SECTOR_SIZE = 0x40000, 0x20000  # in the flash: two sectors
 SPOILT_SIZE = 1024
 EXCEPTIONS = 113
 IRQ0 = 16
+HEARD_MAX = 4096
 BENCH = 0xF000  # registers of the simulated machine, which the board's harness answers
 UNIT = 1
 NEVER = (1 << 64) - 1
@@ -255,8 +258,10 @@ class Board(World):
         image: bytes | None = None,
         flash: bytes | None = None,
         start_s: float | None = None,
+        kept: mmap.mmap | None = None,
         **config: int,
     ) -> None:
+        """`flash`: what its storage begins with. `kept`: where its flash is, to outlive us."""
         self._board = None
         self._states: list[int] = []
         self._library_of_board = _library()
@@ -267,7 +272,8 @@ class Board(World):
             setattr(self.config, name, value)
         image = IMAGE.read_bytes() if image is None else image
         assert len(image) <= STORAGE
-        self.flash = ctypes.create_string_buffer(FLASH_SIZE)
+        flash_type = c_char * FLASH_SIZE
+        self.flash = flash_type() if kept is None else flash_type.from_buffer(kept)
         content = image.ljust(STORAGE, b"\xff") + (flash or b"\xff" * (FLASH_SIZE - STORAGE))
         ctypes.memmove(self.flash, content, FLASH_SIZE)
         self._board = self._call("create", ctypes.byref(self.config), self.flash, of=None)
@@ -275,6 +281,7 @@ class Board(World):
         self.unit = UNIT
         self.timeout_s = 1.0
         self._buffer = (c_uint8 * 512)()
+        self._heard = (_Byte * HEARD_MAX)()
         self.line_settings(19200, "E")
         self._call("power_on")
         if start_s is None:
@@ -386,8 +393,13 @@ class Board(World):
 
     def heard(self) -> list[_Byte]:
         """What the controller has sent."""
-        read = (_Byte * 4096)()
-        return list(read[: self._call("line_read", read, 4096)])
+        count = self._call("line_read", self._heard, HEARD_MAX)
+        return [_Byte.from_buffer_copy(byte) for byte in self._heard[:count]]
+
+    @property
+    def line_idle(self) -> bool:
+        """Nobody sends: the master's bytes are out, and the controller's."""
+        return self._call("line_idle")
 
     def exchange(self, frame: bytes, timeout_s: float | None = None) -> bytes:
         """Bytes, and the answer to them."""

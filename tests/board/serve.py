@@ -3,6 +3,7 @@
 
 import argparse
 import contextlib
+import mmap
 import os
 import select
 import signal
@@ -17,7 +18,7 @@ from levelwind.line.points import decode
 from levelwind.map_table import POINTS
 from slave import crc16, sealed
 
-from board.machine import BENCH, IMAGE, START_S, Board, available
+from board.machine import BENCH, FLASH_SIZE, IMAGE, START_S, STORAGE, Board, available
 
 SLICE_S = 0.001
 LAG_MAX_S = 0.2  # what it may fall behind before it gives up catching up
@@ -86,11 +87,11 @@ class Server:
             self.board.run(SLICE_S)
             if not self.board.powered:
                 self.board.power_on()
-            heard = self.board.heard()
-            if heard:
-                answer += bytes(byte.value for byte in heard)
-                os.write(self._master, bytes(byte.value for byte in heard))
-            elif answer:
+            heard = bytes(byte.value for byte in self.board.heard())
+            answer += heard
+            # As one: the master's clock is not the board's, and would see gaps where none are.
+            if answer and not heard and self.board.line_idle:
+                os.write(self._master, answer)
                 self._note(answer)
                 answer = b""
             if self._traced:
@@ -139,10 +140,19 @@ class Server:
         self.rows.append((self.board.now_ns // 1_000_000, *now, *where))
 
 
+def map_flash(path: Path) -> tuple[mmap.mmap, bytes | None]:
+    """A file as the board's flash: what it writes is kept however this ends; and its storage."""
+    is_new = not path.exists()
+    with path.open("w+b" if is_new else "r+b") as file:
+        file.truncate(FLASH_SIZE)
+        flash = mmap.mmap(file.fileno(), FLASH_SIZE)
+    return flash, None if is_new else flash[STORAGE:]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--port", type=Path, required=True, help="where to link the port to")
-    parser.add_argument("--storage", type=Path, help="keeps the storage sectors of the flash")
+    parser.add_argument("--storage", type=Path, help="file that keeps the flash")
     parser.add_argument("--image", type=Path, default=IMAGE)
     parser.add_argument("--speed", type=float, default=1.0, help="0: as fast as it goes")
     parser.add_argument("--erase-ms", type=int, default=1000, help="time to erase a sector")
@@ -150,8 +160,9 @@ def main() -> int:
     if why := available():
         print(f"board: {why}", file=sys.stderr)
         return 1
-    flash = given.storage.read_bytes() if given.storage and given.storage.exists() else None
-    board = Board(given.image.read_bytes(), flash, flash_erase_us=1000 * given.erase_ms)
+    kept, storage = map_flash(given.storage) if given.storage else (None, None)
+    image = given.image.read_bytes()
+    board = Board(image, storage, kept=kept, flash_erase_us=1000 * given.erase_ms)
     server = Server(board, given.port, given.speed)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: server.stop())
@@ -159,8 +170,6 @@ def main() -> int:
     with contextlib.suppress(KeyboardInterrupt):
         server.run()
     server.close()
-    if given.storage:
-        given.storage.write_bytes(board.stored)
     if board.complaints:
         print(board.complaints, end="", file=sys.stderr)
     return 0

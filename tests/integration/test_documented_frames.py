@@ -5,6 +5,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
 from levelwind.map_table import Flag
 from slave import RawLine, Simulator, Slave
 
@@ -12,7 +13,9 @@ PAGE = Path(__file__).parents[2] / "doc" / "integration.md"
 EXCHANGE = re.compile(r"^    > ([0-9A-F ]+)\n    < ([0-9A-F ]+)$", re.M)
 
 
-def test_documented_frames(own_simulator: Callable[..., Simulator]) -> None:
+def test_documented_frames(own_simulator: Callable[..., Simulator], target: str) -> None:
+    if target == "board":
+        pytest.skip("hardware has no permit before its set is saved, and its frames say so")
     exchanges = EXCHANGE.findall(PAGE.read_text())
     assert len(exchanges) > 8
     port = str(own_simulator().port)

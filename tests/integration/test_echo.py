@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import pytest
 from levelwind.map_table import Command, Flag, Result, State
 from slave import RawLine, Slave
 
@@ -16,6 +17,12 @@ SIMULATOR_OPTIONS = ("--frame-silence-ms", "20")
 STOP = bytes.fromhex("06 0000 0002")
 READ_SELF_TEST = bytes.fromhex("04 0000 0002")
 SELF_TEST_ANSWER = bytes.fromhex("04 04 12345678")
+
+
+@pytest.fixture(autouse=True)
+def an_echo_in_time(target: str) -> None:
+    if target == "board":
+        pytest.skip("a terminal's echo comes later than a wire's; the wire's: tests/board")
 
 
 @contextmanager

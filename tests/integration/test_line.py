@@ -109,7 +109,7 @@ def test_a_request_soon_after_the_answer_of_another_slave_is_heard(
     own_simulator: Callable[..., Simulator], target: str
 ) -> None:
     raw = RawLine(str(own_simulator().port))
-    silence_s = {"sim": 0.002, "native_sim": 0.010, "qemu": 0.030}[target]
+    silence_s = {"sim": 0.002, "native_sim": 0.010, "board": 0.010, "qemu": 0.030}[target]
     other = sealed(bytes.fromhex("09 04 04 0001 0002"))
     for _ in range(50):
         raw.line.write(other)
