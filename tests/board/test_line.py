@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A transceiver that hears itself: every byte that the image sends comes back, as it is sent."""
+"""A line that gives back what the image sends, byte by byte, and one that somebody fills."""
 
 import pytest
 from levelwind.map_table import Command, State
@@ -19,6 +19,7 @@ REFUSED = b"\xe3\x01"
 JOG_ENDS_S = 2.0
 MASTER_TIMEOUT_MS = 1000
 QUIET_S = 0.5
+BABBLE = 1000
 
 
 def answer(board: Board, pdu: bytes) -> bytes:
@@ -68,3 +69,23 @@ def test_a_master_that_is_gone_is_missed_though_the_line_gives_back_an_answer():
     assert answer(board, STOP) == STOP
     board.run(MASTER_TIMEOUT_MS / 1000)
     assert "master_lost" in board.flags
+
+
+@pytest.mark.parametrize("noise", [b"\x55", b"\x00", b"\xff"], ids=lambda noise: noise.hex())
+def test_babble_that_fills_the_line_does_not_end_a_launch(noise: bytes):
+    """Bytes without a gap, at the highest rate: an interrupt for each, and no frame ever ends."""
+    board = indexed(baud=115_200)
+    orbit = board.orbit()
+    board.drum(24_000, 240_000)
+    board.run(0.2)
+    errors = board.value("crc_errors")
+    for _ in range(10):
+        board.send(noise * BABBLE)
+        board.run_ns(BABBLE * board.char_ns)
+    board.run(0.1)
+    assert answer(board, READ_SELF_TEST) == SELF_TEST_ANSWER
+    assert board.seen.resets_software + board.seen.resets_watchdog == 0
+    assert board.value("crc_errors") > errors
+    board.stop_drum()
+    board.check_follows(orbit)
+    assert board.state == State.TRACKING

@@ -81,6 +81,8 @@ def test_a_frame_in_two_lots_of_a_usb_adapter_needs_a_longer_silence(
 def test_babble_on_the_line_does_not_end_a_launch(
     target: str, own_simulator: Callable[..., Simulator]
 ) -> None:
+    if target == "board":
+        pytest.skip("more bytes than its line carries would wait; what it carries: tests/board")
     simulator = own_simulator()
     slave = Slave(str(simulator.port))
     raw = RawLine(str(simulator.port))
@@ -109,7 +111,7 @@ def test_a_request_soon_after_the_answer_of_another_slave_is_heard(
     own_simulator: Callable[..., Simulator], target: str
 ) -> None:
     raw = RawLine(str(own_simulator().port))
-    silence_s = {"sim": 0.002, "native_sim": 0.010, "board": 0.010, "qemu": 0.030}[target]
+    silence_s = {"sim": 0.002, "native_sim": 0.010, "board": 0.030, "qemu": 0.030}[target]
     other = sealed(bytes.fromhex("09 04 04 0001 0002"))
     for _ in range(50):
         raw.line.write(other)
