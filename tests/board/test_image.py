@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(bool(available()), reason=available())
 EDGES_PER_S = 48_000
 EDGE_TO_STEP_MAX_NS = 5_000
 LOAD_MAX = 0.10
-INSTRUCTIONS_AN_EDGE = 95
+INSTRUCTIONS_AN_EDGE = 90
 ENCODER = IRQ0 + 28
 LIVE = ("state", "flags", "m", "u", "pattern_edges", "position_usteps")
 
