@@ -16,7 +16,7 @@ from levelwind.show.output import console, print_table
 from levelwind.simulate import launches, picture, trace
 from levelwind.simulate.demo import DEVIATION_LIMIT_UM, Expectation, launch, report
 
-from board import jitter
+from board import every_instruction, jitter
 from board.machine import IRQ0, Board, Seen, available
 from board.serve import ROW, Server
 
@@ -202,6 +202,13 @@ def main() -> int:
     parser.add_argument("--stay", action="store_true", help="leave the board running for a master")
     parser.add_argument("--cpi", type=float, default=1.0, help="cycles that an instruction takes")
     parser.add_argument("--jitter", action="store_true", help="step pulses against the ideal screw")
+    parser.add_argument(
+        "--injections",
+        nargs="?",
+        const="",
+        metavar="REGEX",
+        help="an interrupt at every instruction of the operations whose name matches (all)",
+    )
     given = parser.parse_args()
     if why := available():
         console.print(f"[red]board: {why}[/red]")
@@ -209,6 +216,8 @@ def main() -> int:
     OUT.mkdir(exist_ok=True)
     if given.jitter:
         return jitter.main(OUT / "board_jitter.png")
+    if given.injections is not None:
+        return every_instruction.main(given.injections)
     began = time.monotonic()
     port = (OUT / "board-port").absolute()
     board = Board(cycles_permille=round(1000 * given.cpi))
