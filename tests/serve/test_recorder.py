@@ -11,13 +11,17 @@ import sqlite3
 import subprocess
 import time
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 from levelwind.errors import ToolError
-from levelwind.map_table import BenchCommand
+from levelwind.line.event_log import LogRecord
+from levelwind.line.live import LIVE_POINTS, MORE_POINTS, Travel
+from levelwind.map_table import BenchCommand, Event, Flag
 from levelwind.serve.lay import Growth
 from levelwind.serve.recorder import Launches, Recorder
+from levelwind.serve.view import Seen
 from prometheus_client.parser import text_string_to_metric_families
 from served import TOOL, Served, wait
 
@@ -190,3 +194,93 @@ def test_metrics(start: Start) -> None:
     served.simulator.end()
     wait(lambda: values()["levelwind_up"] == 0)
     assert not any(re.match("levelwind_(position|flag)", name) for name in values()), "nothing old"
+
+
+class Winch:
+    """What a watcher says, without a controller: a look every 50 ms, the log a second late."""
+
+    firmware, parameters, problem = "0.0.0", {"pitch_um": 12_000}, ""
+
+    def __init__(self, record: Path) -> None:
+        self.listeners, self.log = [], []
+        self.seen: Seen | None = None
+        self.time_s = 1000.0
+        self.log_s = self.time_s
+        self.recorder = Recorder(record, self, Growth())
+        self.listeners.append(self.recorder.see)  # its thread is not started: the test writes
+
+    def look(self, resting: bool, seconds: float = 0.5) -> None:
+        for _ in range(round(seconds / 0.05)):
+            self.time_s += 0.05
+            status = dict.fromkeys((p.name for p in (*LIVE_POINTS, *MORE_POINTS)), 0)
+            status |= {"uptime_ms": self.uptime_ms, "flags": resting << Flag.DRUM_AT_REST}
+            travel = Travel(-83_000, -80_000, 80_000, 83_000)
+            self.seen = Seen(status, travel, self.time_s, 0, list(self.log), self.log_s)
+            for listener in self.listeners:
+                listener(self.seen)
+
+    @property
+    def uptime_ms(self) -> int:
+        """Begins anew in the middle of these tests."""
+        return round(1000 * (self.time_s - 1001.0)) % (1 << 32)
+
+    def happens(self) -> None:
+        """An event that is not read yet."""
+        self.log.append(
+            LogRecord(len(self.log) + 1, 1, self.uptime_ms, Event.LOS1_PLUS, 0, 1, 0, 0)
+        )
+
+    def read_log(self) -> None:
+        self.log_s = self.time_s
+
+
+def events(record: Path, number: int) -> list[int]:
+    return [one["sequence"] for one in Launches(record).one(number)["events"]]
+
+
+def has_ended(record: Path) -> bool:
+    return bool(Launches(record).list(1)[0]["ended"])
+
+
+def test_an_event_belongs_to_the_launch_in_which_it_happened(record: Path) -> None:
+    """Also one that is read after the launch; and one that the next launch's log still holds."""
+    winch = Winch(record)
+    winch.look(resting=True)
+    winch.happens()
+    winch.look(resting=True, seconds=3)
+    winch.look(resting=False)
+    winch.happens()
+    winch.look(resting=False)
+    log, winch.log = winch.log, []
+    winch.look(resting=True)
+    winch.recorder._write()
+    assert not has_ended(record), "its last events are not read yet"
+    winch.log = log
+    winch.happens()
+    winch.read_log()
+    winch.look(resting=True)
+    winch.recorder._write()
+    assert has_ended(record)
+    assert events(record, 1) == [2]
+    winch.look(resting=True, seconds=2)
+    winch.look(resting=False)
+    winch.happens()
+    winch.read_log()
+    winch.look(resting=False)
+    winch.recorder._write()
+    assert events(record, 2) == [4], "before it has ended: a kill loses no more than a second"
+    with closing(sqlite3.connect(record)) as base:
+        cut = base.execute("SELECT result FROM launches WHERE ended IS NULL").fetchall()
+    assert cut == [(None,)]
+
+
+def test_a_kill_before_the_last_events_keeps_the_result(record: Path) -> None:
+    winch = Winch(record)
+    winch.look(resting=True)
+    winch.look(resting=False)
+    winch.look(resting=True)
+    winch.recorder._write()
+    assert not has_ended(record)
+    Recorder(record, winch, Growth())  # as it begins after a kill
+    assert has_ended(record)
+    assert Launches(record).one(1)["result"]["launch_permit"] == "never given"

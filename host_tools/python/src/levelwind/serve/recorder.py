@@ -35,6 +35,8 @@ WAITING_MAX = 40_000
 BEFORE_S = 1.0
 """So much of the rest before a launch belongs to it."""
 KEEP = 1000
+CLOCK_MS = 1 << 32
+"""The controller's uptime begins anew then."""
 COLUMNS = (
     *("state", "fault", "launch_inhibit", "position_um", "rope_speed_mm_per_s"),
     *("drum_speed_edges_per_s", "rope_mm", "rope_out_mm", "rope_layer", "net_edges"),
@@ -69,8 +71,12 @@ class _Launch:
     began: str
     firmware: str
     parameters: Mapping[str, int]
+    began_ms: int
+    """By the controller's clock, as the events are."""
+    ended_ms: int | None = None
     id: int | None = None
-    first_sequence: int = 0
+    told: set[int] = field(default_factory=set)
+    """Events that are written or wait for it, by their sequence."""
     permit: str = "kept"
     max_speed: int = 0
     min_speed: int = 0
@@ -99,6 +105,8 @@ class Recorder:
         self.problem = ""
         self._watcher, self._growth, self._keep = watcher, growth, keep
         self._launch: _Launch | None = None
+        self._ending: list[tuple[_Launch, float, str]] = []
+        """At rest, seen then, and called ended then: the log is still to be read."""
         self._before: deque[tuple[float, Seen]] = deque()
         self._waiting: deque[tuple[str, _Launch, Any]] = deque()
         self._lock = threading.Lock()
@@ -128,6 +136,7 @@ class Recorder:
 
     def close(self) -> None:
         """Write what is there, and end."""
+        self._finish(None)
         self._ended.set()
         self._thread.join(5.0)
         self._write()
@@ -146,6 +155,7 @@ class Recorder:
 
     def see(self, seen: Seen) -> None:
         """A look at the controller."""
+        self._finish(seen)
         resting = flag(seen.status, Flag.DRUM_AT_REST)
         if self._launch is None:
             self._before.append((seen.stamp_s, seen))
@@ -159,9 +169,11 @@ class Recorder:
             self._end(self._launch, seen)
 
     def _begin(self, seen: Seen) -> None:
-        began_s = self._before[0][0]
-        launch = _Launch(began_s, _now(), self._watcher.firmware, dict(self._watcher.parameters))
-        launch.first_sequence = max((record.sequence for record in seen.log), default=0)
+        began_s, first = self._before[0]
+        launch = _Launch(
+            *(began_s, _now(), self._watcher.firmware, dict(self._watcher.parameters)),
+            began_ms=first.status["uptime_ms"],
+        )
         launch.rope_before_mm = seen.status["rope_mm"]
         resting = [one for _, one in self._before if flag(one.status, Flag.DRUM_AT_REST)] or [seen]
         if not flag(resting[-1].status, Flag.LAUNCH_PERMIT):
@@ -183,6 +195,21 @@ class Recorder:
             fault = enum_text(Fault, status["fault"])
             launch.faults += [fault] if fault not in launch.faults else []
         self._keep_sample(launch, seen)
+        self._keep_events(launch, seen)
+
+    def _keep_events(self, launch: _Launch, seen: Seen) -> None:
+        """As soon as they are read: a kill may come, and the controller forgets the oldest."""
+        if seen.log_s < launch.began_s:
+            return
+        last_ms = seen.status["uptime_ms"] if launch.ended_ms is None else launch.ended_ms
+        lasted_ms = (last_ms - launch.began_ms) % CLOCK_MS
+        boot = max((record.boot for record in seen.log), default=0)
+        for record in seen.log:
+            if record.sequence in launch.told or record.boot != boot:
+                continue
+            if (record.time_ms - launch.began_ms) % CLOCK_MS <= lasted_ms:
+                launch.told.add(record.sequence)
+                self._put("event", launch, _event(record))
 
     def _keep_sample(self, launch: _Launch, seen: Seen) -> None:
         status = seen.status
@@ -192,7 +219,19 @@ class Recorder:
 
     def _end(self, launch: _Launch, seen: Seen) -> None:
         self._launch = None
-        self._put("end", launch, (_now(), self._result(launch, seen), seen.log))
+        launch.ended_ms = seen.status["uptime_ms"]
+        self._put("rest", launch, self._result(launch, seen))
+        self._ending.append((launch, seen.stamp_s, _now()))
+
+    def _finish(self, seen: Seen | None) -> None:
+        """Launches whose last events were read since have ended; without a look, all have."""
+        for one in list(self._ending):
+            launch, rest_s, ended = one
+            if seen is None or seen.log_s > rest_s:
+                self._ending.remove(one)
+                if seen is not None:
+                    self._keep_events(launch, seen)
+                self._put("end", launch, ended)
 
     def _result(self, launch: _Launch, seen: Seen) -> dict[str, object]:
         return {
@@ -209,10 +248,13 @@ class Recorder:
     def _look_whether_gone(self) -> None:
         """A controller that has gone ends the launch where it was last seen."""
         launch, seen = self._launch, self._watcher.seen
-        if launch is not None and self._watcher.problem and seen is not None:
+        if not self._watcher.problem or seen is None:
+            return
+        if launch is not None:
             self._launch = None
-            result = {**self._result(launch, seen), "cut": self._watcher.problem}
-            self._put("end", launch, (_now(), result, seen.log))
+            self._put("rest", launch, {**self._result(launch, seen), "cut": self._watcher.problem})
+            self._ending.append((launch, seen.stamp_s, _now()))
+        self._finish(None)
 
     # ---- writing -------------------------------------------------------------------------------
 
@@ -264,26 +306,22 @@ class Recorder:
             ).lastrowid
         elif kind == "sample":
             run(INSERT_SAMPLE, (launch.id, *what))
+        elif kind == "event":
+            run("INSERT OR IGNORE INTO events VALUES (?, ?, ?, ?, ?, ?, ?, ?)", (launch.id, *what))
+        elif kind == "rest":
+            run(
+                "UPDATE launches SET result = ?, lay = ? WHERE id = ?",
+                (json.dumps(what), json.dumps(self._growth.picture()), launch.id),
+            )
         else:
-            ended, result, log = what
-            run(
-                "UPDATE launches SET ended = ?, result = ?, lay = ? WHERE id = ?",
-                (ended, json.dumps(result), json.dumps(self._growth.picture()), launch.id),
-            )
-            for record in log:
-                if record.sequence > launch.first_sequence:
-                    run("INSERT OR IGNORE INTO events VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
-                        (launch.id, *_event(record)))  # fmt: skip
-            run(
-                "DELETE FROM launches WHERE id <= (SELECT max(id) FROM launches) - ?",
-                (self._keep,),
-            )
+            run("UPDATE launches SET ended = ? WHERE id = ?", (what, launch.id))
+            run("DELETE FROM launches WHERE id <= ? - ?", (launch.id, self._keep))
             run("PRAGMA incremental_vacuum(1000)").fetchall()
 
     def _close_cut_launches(self) -> None:
         """What a kill or a power cut has left open."""
         self._base.execute(
-            "UPDATE launches SET ended = began, result = ? WHERE ended IS NULL",
+            "UPDATE launches SET ended = began, result = coalesce(result, ?) WHERE ended IS NULL",
             (json.dumps({"cut": "The recording was cut: the server has ended."}),),
         )
 

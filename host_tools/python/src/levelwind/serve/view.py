@@ -54,6 +54,8 @@ class Seen:
     """When the request of the live values was sent: time.monotonic()."""
     direction: int = 0
     log: list[LogRecord] = field(default_factory=list)
+    log_s: float = 0.0
+    """Every event until then is in `log`: time.monotonic()."""
 
 
 def key(action: str) -> str:

@@ -34,6 +34,7 @@ class Watcher:
         self._settings_s = 0.0
         self._log: list[event_log.LogRecord] = []
         self._log_sequence: int | None = None
+        self._log_s = 0.0
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="watcher", daemon=True)
 
@@ -65,7 +66,7 @@ class Watcher:
         device = self.device
         status = read_live(device) | device.read(MORE_POINTS)
         travel = read_travel(device)
-        self._log_sequence, self._settings_s = None, 0.0
+        self._log_sequence, self._log_s, self._settings_s = None, 0.0, 0.0
         motion, rest = Motion(), self._rest(status)
         while not self._ended.is_set():
             began = time.monotonic()
@@ -76,7 +77,7 @@ class Watcher:
             if next(rest, None) is None:
                 rest = self._rest(status)
                 travel = self._travel or travel
-            seen = Seen(dict(status), travel, began, motion.see(status), self._log)
+            seen = Seen(dict(status), travel, began, motion.see(status), self._log, self._log_s)
             self.seen, self.problem = seen, ""
             for listener in self.listeners:
                 listener(seen)
@@ -93,6 +94,7 @@ class Watcher:
             status.update(device.read(run.points))
             yield True
         self.firmware = f"{version_of(status)} {image_of(status) or ''}".strip()
+        asked_s = time.monotonic()
         newest = device.value("log_sequence")
         yield True
         if newest != self._log_sequence:
@@ -105,6 +107,7 @@ class Watcher:
                 yield True
             self._log = event_log.records(raw)
             self._log_sequence = newest
+        self._log_s = asked_s
         if time.monotonic() > self._settings_s:
             self._settings_s = time.monotonic() + SETTINGS_EVERY_S
             self._travel = read_travel(device)

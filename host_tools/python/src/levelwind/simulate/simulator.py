@@ -80,6 +80,11 @@ class Simulator:
     def __exit__(self, *_: object) -> None:
         self.end()
 
+    @property
+    def pid(self) -> int:
+        """Of the process."""
+        return self._process.pid
+
     def end(self) -> int:
         """Ask it to end, so that its files are complete; its exit status."""
         if self._process.poll() is None:
