@@ -41,10 +41,20 @@ def wait(condition: Callable[[], object], limit_s: float = 10.0, what: str = "")
 class Served:
     """A simulator and a server; both can be ended and begun again at the same addresses."""
 
-    def __init__(self, folder: Path, *options: str, write: bool = True, speed: str = "1") -> None:
+    def __init__(
+        self,
+        folder: Path,
+        *options: str,
+        write: bool = True,
+        speed: str = "1",
+        storage: Path | None = None,
+        by_tcp: bool = False,
+    ) -> None:
         self.folder = folder
+        self.storage = storage or folder / "parameters"
         self.web, self.gate = free_port(), free_port()
-        self.port = folder / "port"
+        self.simulator_tcp = f"127.0.0.1:{free_port()}" if by_tcp else None
+        self.port = f"tcp://{self.simulator_tcp}" if by_tcp else folder / "port"
         self.pin_file = folder / "pin.json"
         PinFile(self.pin_file).set(PIN)
         self.speed = speed
@@ -61,7 +71,10 @@ class Served:
 
     def start_simulator(self) -> None:
         line = simulator.arguments(
-            str(self.port), speed=self.speed, storage=self.folder / "parameters"
+            None if self.simulator_tcp else str(self.port),
+            tcp=self.simulator_tcp,
+            speed=self.speed,
+            storage=self.storage,
         )
         self.simulator = simulator.Simulator(line)
 

@@ -9,8 +9,10 @@ import re
 import resource
 import sqlite3
 import subprocess
+import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 
@@ -19,6 +21,7 @@ from levelwind.errors import ToolError
 from levelwind.line.event_log import LogRecord
 from levelwind.line.live import LIVE_POINTS, MORE_POINTS, Travel
 from levelwind.map_table import BenchCommand, Event, Flag
+from levelwind.serve import lay
 from levelwind.serve.lay import Growth
 from levelwind.serve.recorder import Launches, Recorder
 from levelwind.serve.view import Seen
@@ -284,3 +287,23 @@ def test_a_kill_before_the_last_events_keeps_the_result(record: Path) -> None:
     Recorder(record, winch, Growth())  # as it begins after a kill
     assert has_ended(record)
     assert Launches(record).one(1)["result"]["launch_permit"] == "never given"
+
+
+def test_who_asks_while_a_lay_is_drawn_gets_the_new_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawing, go_on = threading.Event(), threading.Event()
+
+    def draw(*_: object) -> dict[str, object]:
+        drawing.set()
+        assert go_on.wait(10)
+        return {"turns": 1.0}
+
+    monkeypatch.setattr(lay, "_draw", draw)
+    growth = Growth()
+    with ThreadPoolExecutor() as pool:
+        first = pool.submit(growth.picture)
+        assert drawing.wait(10)
+        second = pool.submit(growth.picture)
+        with pytest.raises(TimeoutError):
+            second.result(0.05)
+        go_on.set()
+        assert first.result(10) == second.result(10) == {"turns": 1.0}

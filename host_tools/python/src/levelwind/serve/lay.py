@@ -20,6 +20,7 @@ class Growth:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
+        self._drawing = threading.Lock()
         self._path_mm: list[float] = []
         self._before: tuple[float, float] | None = None
         """Drum's angle, in angles, and place, at the last look."""
@@ -61,13 +62,14 @@ class Growth:
 
     def picture(self) -> dict[str, object]:
         """The surface, a byte for each cell, rows by the drum's angle; or why there is none."""
-        with self._lock:
-            if not self._changed:
-                return self._picture
-            self._changed = False
-            path, rope_um = list(self._path_mm), self._rope_um
-        self._picture = _draw(path, rope_um)
-        return self._picture
+        with self._drawing:  # who comes meanwhile must not get the one before
+            with self._lock:
+                if not self._changed:
+                    return self._picture
+                self._changed = False
+                path, rope_um = list(self._path_mm), self._rope_um
+            self._picture = _draw(path, rope_um)
+            return self._picture
 
 
 def _draw(path: list[float], rope_um: int) -> dict[str, object]:
