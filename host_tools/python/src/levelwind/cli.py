@@ -2,14 +2,13 @@
 """The command `levelwind`."""
 
 import shutil
-import signal
 from collections.abc import Callable
-from types import FrameType
 from typing import Any
 
 import typer
 from typer.core import TyperGroup
 
+from levelwind import interrupt
 from levelwind.commands import (
     access,
     bench,
@@ -32,13 +31,6 @@ EXIT_INTERRUPTED = 130
 HELP_COLUMNS_MIN = 72
 
 
-def _is_by_ctrl_c(error: BaseException | None) -> bool:
-    """Ctrl-C came first, and the error tells what it has cut off."""
-    while error is not None and not isinstance(error, KeyboardInterrupt):
-        error = error.__context__
-    return error is not None
-
-
 class _Group(TyperGroup):
     """Turns errors into one message on standard error and an exit status."""
 
@@ -48,7 +40,7 @@ class _Group(TyperGroup):
             return super().invoke(ctx)
         except ToolError as error:
             terminal.say(f"levelwind: {error}")
-            raise typer.Exit(EXIT_INTERRUPTED if _is_by_ctrl_c(error) else 1) from None
+            raise typer.Exit(EXIT_INTERRUPTED if interrupt.is_behind(error) else 1) from None
         except KeyboardInterrupt:
             raise typer.Exit(EXIT_INTERRUPTED) from None
 
@@ -124,15 +116,8 @@ app.add_typer(commission.app, name="report", rich_help_panel="Set up")
 app.add_typer(cam.app, name="cam", rich_help_panel="Without a controller")
 
 
-def _end(number: int, _: FrameType | None) -> None:
-    """End as Ctrl-C does, so that whatever a command has set in motion is stopped."""
-    raise KeyboardInterrupt(signal.Signals(number).name)
-
-
 def main() -> None:
     """Entry point."""
-    signal.signal(signal.SIGTERM, _end)
-    if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:  # as nohup wants it
-        signal.signal(signal.SIGHUP, _end)
+    interrupt.prepare()
     terminal.prepare()
     terminal.run(app)

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command that puts a slave, whichever it is, through the Modbus standards."""
 
-import signal
 import statistics
 from collections import Counter
-from types import FrameType
 from typing import Annotated
 
 import typer
 
+from levelwind import interrupt
 from levelwind.conformance import framing, others, reads, writes  # noqa: F401 - they hold the cases
 from levelwind.conformance.line import SerialLine
 from levelwind.conformance.slave import Slave
@@ -19,7 +18,6 @@ from levelwind.line.connection import Json, with_line
 from levelwind.line.port import Line
 from levelwind.show.output import console, print_json, print_table
 
-ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 Address = Annotated[int | None, typer.Option(min=0, max=65535, metavar="ADDRESS")]
 
 
@@ -59,7 +57,7 @@ def conformance(
     hints = {1: coil, 2: discrete_input, 3: holding_register, 4: input_register}
     port = SerialLine(line)
     try:
-        _end_in_order()
+        interrupt.only_the_first()
         slave = Slave(port, line.unit, line.timeout_s)
         found = survey(
             slave,
@@ -82,18 +80,6 @@ def conformance(
         console.print(", ".join(f"{counts[v]} {v.value}" for v in Verdict))
     if any(o.verdict == Verdict.FAIL for o in outcomes):
         raise typer.Exit(1)
-
-
-def _end_in_order() -> None:
-    """Only the first Ctrl-C (or SIGTERM) counts: a second one would cut off the putting back."""
-
-    def end(number: int, _: FrameType | None) -> None:
-        for each in ENDING_SIGNALS:
-            signal.signal(each, signal.SIG_IGN)
-        raise KeyboardInterrupt(signal.Signals(number).name)
-
-    for each in ENDING_SIGNALS:
-        signal.signal(each, end)
 
 
 def _case(outcome: Outcome) -> dict[str, str]:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Commands for the operator: what is going on, and what shall happen."""
 
-import signal
 import time
 from collections.abc import Callable
 from math import isfinite
@@ -12,6 +11,7 @@ import typer
 from rich.live import Live
 from rich.panel import Panel
 
+from levelwind import interrupt
 from levelwind.errors import RefusedError, ToolError
 from levelwind.line import switch_delay
 from levelwind.line.connection import Json, with_device, with_line
@@ -125,7 +125,6 @@ class Watching:
         self._reason = "waiting for the first answer"
         self._heard_s = time.monotonic()
         self._patience_s = NO_DATA_AFTER_S
-        self._interrupted = False
 
     def view(self) -> Panel:
         """What to show now; nothing that is old."""
@@ -136,26 +135,20 @@ class Watching:
 
     def run(self, show: Callable[[], None]) -> NoReturn:
         """Read for ever, also after the port or the controller was gone. Until Ctrl-C."""
-        signal.signal(signal.SIGINT, self._interrupt)
         while True:
             try:
                 with Device(self._line) as device:
                     travel = read_travel(device)
-                    while not self._interrupted:
+                    while True:
                         self._read(device, travel)
                         show()
                         time.sleep(WATCH_PERIOD_S)
             except ToolError as error:
+                if interrupt.is_behind(error):
+                    raise
                 self._panel, self._reason, self.told = None, str(error), "no data"
                 show()
-            if self._interrupted:
-                raise KeyboardInterrupt
             time.sleep(WATCH_PERIOD_S)
-
-    def _interrupt(self, *_: object) -> None:
-        """The interpreter drops what is raised in a destructor or a callback: keep it in mind."""
-        self._interrupted = True
-        raise KeyboardInterrupt
 
     def _read(self, device: Device, travel: Travel) -> None:
         began = time.monotonic()
