@@ -6,3 +6,7 @@ set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc)
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+find_program(LW_WINE NAMES wine64 wine) # runs the tests; Debian: apt-get install wine64
+if(LW_WINE)
+  set(CMAKE_CROSSCOMPILING_EMULATOR ${LW_WINE})
+endif()

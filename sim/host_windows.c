@@ -10,16 +10,22 @@
 #include <signal.h>
 #include <stdio.h>
 #include <sys/stat.h>
-#include <time.h>
+#include <windows.h>
 
 #include "port.h"
 
 uint64_t lw_host_now_ns(void)
 {
-	struct timespec now;
+	/* Not clock_gettime(): which library has that depends on the compiler's threads. */
+	LARGE_INTEGER ticks, ticks_per_s;
 
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+	QueryPerformanceFrequency(&ticks_per_s);
+	QueryPerformanceCounter(&ticks);
+
+	const uint64_t s = (uint64_t)(ticks.QuadPart / ticks_per_s.QuadPart);
+	const uint64_t rest = (uint64_t)(ticks.QuadPart % ticks_per_s.QuadPart);
+
+	return s * 1000000000u + rest * 1000000000u / (uint64_t)ticks_per_s.QuadPart;
 }
 
 int lw_host_open_alone(const char *path)

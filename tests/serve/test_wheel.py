@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The wheel: the whole tool with its compiled core, away from the source tree; and for Windows."""
+"""The wheel: the whole tool with its compiled core, away from the source tree."""
 
 import os
-import shutil
 import subprocess
 import sys
 import zipfile
@@ -11,8 +10,6 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-CROSS = ROOT / "cmake" / "mingw-w64.cmake"
-COMPILER = "x86_64-w64-mingw32-gcc"
 
 
 def run(*command: object, **options: object) -> subprocess.CompletedProcess[str]:
@@ -71,17 +68,3 @@ def test_it_runs_without_the_source_tree(wheel: Path, tmp_path: Path) -> None:
     finally:
         server.terminate()
         server.wait(20)
-
-
-@pytest.mark.skipif(shutil.which(COMPILER) is None, reason="no mingw-w64: gcc-mingw-w64-x86-64")
-def test_core_library_and_simulator_for_windows(tmp_path: Path) -> None:
-    run("cmake", "-S", ROOT, "-B", tmp_path, "-G", "Ninja", f"-DCMAKE_TOOLCHAIN_FILE={CROSS}",
-        "-DLW_TOOL_ONLY=ON")  # fmt: skip
-    run("cmake", "--build", tmp_path)
-    for name in ("lw_sim.exe", "liblw_native.dll"):
-        assert (tmp_path / name).read_bytes().startswith(b"MZ")
-    dump = run("x86_64-w64-mingw32-objdump", "-p", tmp_path / "lw_sim.exe").stdout
-    needed = {line.split()[-1].upper() for line in dump.splitlines() if "DLL Name" in line}
-    assert needed == {"KERNEL32.DLL", "MSVCRT.DLL", "WS2_32.DLL"}, "what every Windows has"
-    if shutil.which("wine"):
-        run("wine", tmp_path / "lw_sim.exe", "--help")

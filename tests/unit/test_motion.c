@@ -723,10 +723,10 @@ static void test_many_steps_of_a_cam_are_accounted_for_in_time(void)
 		setUp();
 		follow_hills(&motion, LW_CAM_INTERPOLATION_LINEAR);
 		edges(1, 300);
-		motion.cam.ahead_usteps = sign * (INT32_MAX / 2 - 1000);
+		motion.cam.ahead_usteps = (int32_t)(sign * (int64_t)(INT32_MAX / 2 - 1000));
 		lw_cam_motion_prepare(&motion.cam);
 		TEST_ASSERT_EQUAL_INT32(LW_CAM_STRAIGHT, motion.cam.open);
-		motion.cam.ahead_usteps = sign * (INT32_MAX / 2 + 1000);
+		motion.cam.ahead_usteps = (int32_t)(sign * (int64_t)(INT32_MAX / 2 + 1000));
 		lw_cam_motion_prepare(&motion.cam);
 		TEST_ASSERT_EQUAL_INT32(LW_CAM_CLOSED, motion.cam.open);
 		pos = lw_cam_pos(&motion.cam.cam) + motion.cam.ahead_usteps - steps_sum;
