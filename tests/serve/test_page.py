@@ -366,6 +366,9 @@ def test_width(start: Start, open_page: Open, shot: Shot, width: int) -> None:
     page.click("#parameters summary")
     expect(page.locator("#parameter-rows tr").first).to_be_visible()
     assert page.evaluate("document.documentElement.scrollWidth") <= width
+    expect(page.locator("#log-rows")).to_contain_text("Indexing succeeded")
+    hidden_px = page.locator("#log .scroll").evaluate("e => e.scrollWidth - e.clientWidth")
+    assert hidden_px <= 0, "nothing of the log is cut off"
     tall = page.locator("#permit-word").evaluate("e => parseFloat(getComputedStyle(e).fontSize)")
     assert tall >= (32 if width == 360 else 100)
     shot(page, f"width_{width}")
