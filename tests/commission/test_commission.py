@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
-from levelwind.commission import repeat, report, session
+from levelwind.commission import repeat, report, session, verify
 from levelwind.commission.bench import Index, WrongError
 from levelwind.commission.guide import STEPS
 from levelwind.errors import ToolError
@@ -63,16 +63,16 @@ def test_the_report_names_who_has_accepted_what_and_binds(winch: Winch) -> None:
     assert all(step.title.encode() in page for step in STEPS)
     assert json.loads(document)["accepted_crc"] == held.accepted_crc
     for path in paths:
-        assert report.differences(report.load(path), winch.device) == []
+        assert verify.differences(verify.load(path), winch.device) == []
 
     changed = json.loads(document)
     changed["parameters"]["pitch_um"] += 1
-    assert any("it was changed" in d for d in report.differences(changed, winch.device))
+    assert any("it was changed" in d for d in verify.differences(changed, winch.device))
     unsigned = json.loads(document) | {"accepted_crc": 0}
-    assert "never signed" in report.differences(unsigned, winch.device)[0]
+    assert "never signed" in verify.differences(unsigned, winch.device)[0]
     winch.world.command(Command.STOP)
     winch.world.apply(pitch_um=held.active["pitch_um"] + 100)
-    found = report.differences(json.loads(document), winch.device)
+    found = verify.differences(json.loads(document), winch.device)
     assert [d.split(":")[0] for d in found] == ["pitch_um"]
     assert "not_accepted" in winch.world.flags
 
@@ -353,7 +353,7 @@ def test_files_that_are_none_are_named(tmp_path: Path, winch: Winch) -> None:
     with pytest.raises(ToolError, match="is no commissioning"):
         session.load(torn)
     with pytest.raises(ToolError, match="is no report"):
-        report.load(torn)
+        verify.load(torn)
     winch.answers |= {"contacts.wiring": "both"}
     with pytest.raises(ToolError, match=r"contacts\.wiring: both: give one of pair, no, nc"):
         winch.go_on()

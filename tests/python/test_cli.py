@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
-from levelwind.cli import app
+from levelwind.cli import COMMANDS, app
 from levelwind.core.ideal_screw import USTEP, Screw, State
 from levelwind.line.device import Device
 from levelwind.map_table import POINTS
@@ -19,7 +19,9 @@ def levelwind(*arguments: str):
     return CliRunner().invoke(app, list(arguments))
 
 
-@pytest.mark.parametrize("command", [[], *[[c.name] for c in app.registered_commands]])
+@pytest.mark.parametrize(
+    "command", [[], *[[name] for panel in COMMANDS.values() for name in panel]]
+)
 def test_every_command_has_help(command: list[str]):
     result = levelwind(*command, "--help")
     assert result.exit_code == 0

@@ -7,14 +7,16 @@ import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from levelwind.core import layout
 from levelwind.core.native import I32, I64, LIBRARY, U32, find
 from levelwind.errors import RefusedError, ToolError
 from levelwind.map_table import CamInterpolation, Reason
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 ROWS_MAX = 256
 NAME_SIZE = 16
@@ -315,11 +317,13 @@ class Cam:
 
     def run(
         self, runs: Sequence[int], trace_points: int = 0, next_table: Table | None = None
-    ) -> tuple[Replay, NDArray[np.int64], int]:
+    ) -> tuple[Replay, "NDArray[np.int64]", int]:
         """Take runs of edges, negative for backward.
 
         Returns the result, the position before every n-th edge (empty without trace_points), and n.
         """
+        import numpy as np  # noqa: PLC0415 - a tenth of a second that tables do not need
+
         total = sum(map(abs, runs))
         stride = max(1, -(-total // trace_points)) if trace_points else 1
         capacity = total // stride + 1 if trace_points else 0

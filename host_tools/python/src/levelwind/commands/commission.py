@@ -6,7 +6,8 @@ from typing import Annotated
 
 import typer
 
-from levelwind.commission import dialogue, report, session
+from levelwind.commission import dialogue, session
+from levelwind.commission import verify as signed
 from levelwind.commission.bench import Bench
 from levelwind.commission.human import Answers, Human, StoppedError, Terminal
 from levelwind.errors import ToolError
@@ -59,8 +60,8 @@ def verify(
     file: Annotated[Path, typer.Argument(help="report.json, .html or .pdf.", metavar="FILE")],
 ) -> None:
     """Compare a report with the machine: firmware, image, parameters, signature."""
-    document = report.load(file)
-    found = report.differences(document, device)
+    document = signed.load(file)
+    found = signed.differences(document, device)
     if found:
         raise ToolError(
             f"{file} is not of this machine as it is now:\n" + "\n".join(f"- {d}" for d in found)
@@ -76,6 +77,8 @@ def write(
     file: Annotated[Path, typer.Argument(help="commissioning.json.", metavar="FILE")],
 ) -> None:
     """Write the report anew, also of a commissioning that is not finished."""
+    from levelwind.commission import report  # noqa: PLC0415 - matplotlib takes a second
+
     held = session.load(file)
     if not held.active:
         raise ToolError(f"{file}: no step is done yet.")

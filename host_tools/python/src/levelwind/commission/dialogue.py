@@ -5,7 +5,7 @@ import contextlib
 from pathlib import Path
 
 from levelwind import whole_file
-from levelwind.commission import guide, report, session
+from levelwind.commission import guide, session
 from levelwind.commission.bench import Bench
 from levelwind.commission.human import StoppedError
 from levelwind.errors import NoAnswerError, ToolError, UnknownOutcomeError
@@ -52,4 +52,6 @@ def _run(bench: Bench) -> list[Path]:
                 f"{bench.human.to_go_on(bench.session.path)}"
             ) from None
         raise
+    from levelwind.commission import report  # noqa: PLC0415 - matplotlib takes a second
+
     return report.write(bench.session, bench.session.path.parent)

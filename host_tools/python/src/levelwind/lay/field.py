@@ -7,14 +7,16 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from levelwind.core import layout, native
 from levelwind.core.native import I32, U32
 from levelwind.errors import ToolError
 from levelwind.line.points import PARAMETERS, refusal
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 ANGLES = 72
 COLUMNS_PER_MM = 4
@@ -51,13 +53,13 @@ class Evenness:
 class Field:
     """The surface of a drum with rope on it."""
 
-    height_mm: NDArray[np.float32]
+    height_mm: "NDArray[np.float32]"
     """By angle, then by place across the drum."""
-    place_mm: NDArray[np.float64]
+    place_mm: "NDArray[np.float64]"
     """Of the columns, across the drum."""
-    position_mm: NDArray[np.float64]
+    position_mm: "NDArray[np.float64]"
     """Of the rope at every angle that it was laid on, in order."""
-    centre_mm: NDArray[np.float64]
+    centre_mm: "NDArray[np.float64]"
     """Height of the rope's centre there, above the bare drum."""
     rope_mm: float
     judged: slice
@@ -101,11 +103,11 @@ def _check(status: int, why: native.Refusal) -> None:
         raise ToolError(f"The rope cannot be laid: {os.strerror(-status)}.")
 
 
-def _f64(array: NDArray[np.float64]) -> object:
+def _f64(array: "NDArray[np.float64]") -> object:
     return array.ctypes.data_as(ctypes.POINTER(_F64))
 
 
-def _f32(array: NDArray[np.float32]) -> object:
+def _f32(array: "NDArray[np.float32]") -> object:
     return array.ctypes.data_as(ctypes.POINTER(_F32))
 
 
@@ -130,6 +132,8 @@ def evenness(parameters: Mapping[str, int], rope_um: int, turns: float) -> Evenn
 
 def lay(parameters: Mapping[str, int], rope_um: int, turns: float) -> Field:
     """The surface that so many turns of rope make."""
+    import numpy as np  # noqa: PLC0415 - a tenth of a second
+
     library = _library()
     values, grid, why = _values(parameters), _Grid(), native.Refusal()
     _check(library.lw_native_lay_grid(values, rope_um, ctypes.byref(grid), ctypes.byref(why)), why)
@@ -147,8 +151,10 @@ def lay(parameters: Mapping[str, int], rope_um: int, turns: float) -> Field:
     return Field(height, places, position, centre, rope_um / 1000, judged)
 
 
-def lay_path(position_mm: NDArray[np.float64], rope_um: int) -> Field:
+def lay_path(position_mm: "NDArray[np.float64]", rope_um: int) -> Field:
     """The surface of rope laid along any path, given at every angle of the grid from 0 on."""
+    import numpy as np  # noqa: PLC0415
+
     position = np.ascontiguousarray(position_mm, dtype=np.float64)
     half = rope_um * COLUMNS_PER_MM // 2000
     low, high = (position.min(), position.max()) if len(position) else (0.0, 0.0)
