@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What documents name must be there: files and folders, `./dev` commands, local links.
+"""What documents name must be there: files, folders, functions, `./dev` commands, local links.
 
 A path may be given from the root, or from a folder that the sentence is about (`motion/law.c` of
 the core): it is there if some file's path ends with it.
@@ -25,6 +25,10 @@ FILE = re.compile(
     r"|(?:[\w.*-]+/)+[\w*-]+\.(?:c|h|py|md|yaml|yml|json|toml|sh|cmake|html|png|svg))"
 )
 FOLDER = re.compile(r"(?:[\w.-]*[A-Za-z_][\w.-]*/)+(?:[\w.-]*[A-Za-z_][\w.-]*)?")
+# A function of this repository, or of what it uses: some source names it.
+FUNCTION = re.compile(r"(?:(\w+)\(\)|((?:lw|LW)_\w+))")
+NAME = re.compile(r"[A-Za-z_]\w*")
+SOURCES = (".c", ".h", ".py", ".js", ".html", ".yaml", ".conf", ".cmake", ".txt", "Kconfig")
 # What is made by running something is not there yet.
 MADE = ("out/", "build/", "/", "~", "../", ".venv")
 PLACEHOLDER = re.compile(r"[A-Z]{4,}|\.\.\.|<|FILE|NAME")
@@ -39,9 +43,10 @@ def tracked(root: Path) -> list[str]:
 
 
 class Tree:
-    """The files of a repository, and what their paths end with."""
+    """The files of a repository, what their paths end with, and the names that sources hold."""
 
-    def __init__(self, files: Iterable[str]) -> None:
+    def __init__(self, files: Iterable[str], names: Iterable[str] = ()) -> None:
+        self.names = frozenset(names)
         self.ends: set[str] = set()
         for file in files:
             parts = file.split("/")
@@ -81,6 +86,9 @@ def problems(document: str, text: str, tree: Tree, commands: Iterable[str]) -> I
         folder = FOLDER.fullmatch(path) and (path.endswith("/") or tree.has(path.split("/")[0]))
         if (folder or FILE.fullmatch(path)) and not tree.has(path):
             yield f"{document}: `{path}` is not there"
+        function = FUNCTION.fullmatch(name)
+        if function and (function[1] or function[2]) not in tree.names:
+            yield f"{document}: `{name}` stands in no source"
     for found in LINK.finditer(in_blocks):
         is_local = "://" not in found[1] and not found[1].startswith("mailto:")
         if is_local and not tree.has(os.path.normpath(Path(document).parent / found[1])):
@@ -92,7 +100,9 @@ def problems(document: str, text: str, tree: Tree, commands: Iterable[str]) -> I
 
 def check(root: Path) -> Iterator[str]:
     files = tracked(root)
-    tree = Tree(files)
+    sources = [root / file for file in files if file.endswith(SOURCES) and (root / file).is_file()]
+    names = {name for path in sources for name in NAME.findall(path.read_text(encoding="utf-8"))}
+    tree = Tree(files, names)
     commands = re.findall(r"^cmd_(\w+)\(\)", (root / "dev").read_text(encoding="utf-8"), re.M)
     for file in files:
         if file.endswith(".md") and file != "CHANGELOG.md" and (root / file).is_file():

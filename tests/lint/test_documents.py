@@ -11,7 +11,8 @@ FILES = [
 
 
 def said(text: str, document: str = "doc/x.md") -> list[str]:
-    return list(documents.problems(document, text, documents.Tree(FILES), ["test", "run"]))
+    tree = documents.Tree(FILES, ["lw_law_edge", "is_guarded", "lw_law"])
+    return list(documents.problems(document, text, tree, ["test", "run"]))
 
 
 @pytest.mark.parametrize(
@@ -23,6 +24,7 @@ def said(text: str, document: str = "doc/x.md") -> list[str]:
         "`out/launch.png`, `build/host/lw_sim`, `winch.yaml`, `1/2`, `dP/Ks`, `FILE.md`",
         "[board](board.md#top), [root](../README.md), [web](https://example.org/x.md)",
         "`./dev test tests/python`\n    ./dev run",
+        "`lw_law_edge()`, `is_guarded()`, `struct lw_law`, `lw_law`, `law(1)`",
     ],
 )
 def test_what_is_there_or_no_path_is_left_alone(text: str):
@@ -37,6 +39,9 @@ def test_what_is_there_or_no_path_is_left_alone(text: str):
         ("`lib/lw_core/src/motions/`", "doc/x.md: `lib/lw_core/src/motions/` is not there"),
         ("`test_{cli,other}.py`", "doc/x.md: `test_other.py` is not there"),
         ("[b](boards.md)", "doc/x.md: the link to boards.md leads nowhere"),
+        ("`lw_law_edges()`", "doc/x.md: `lw_law_edges()` stands in no source"),
+        ("`guarded()`", "doc/x.md: `guarded()` stands in no source"),
+        ("`lw_laws`", "doc/x.md: `lw_laws` stands in no source"),
         ("    ./dev tests", "doc/x.md: `./dev tests` is no command"),
     ],
 )
