@@ -4,37 +4,21 @@
 The commands are those that the tool has: a new one without a line here fails.
 """
 
-import fcntl
-import os
-import pty
-import re
 import signal
-import struct
 import subprocess
-import termios
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import typer
 from levelwind.cli import app
 from levelwind.serve.recorder import Launches
+from on_terminal import TERMINALS, leaves, on_a_terminal, words
 from served import wait
 from slave import Slave, bring_to_rest
 from test_tool import LEVELWIND, ROOT, environment
 
 # Where brackets would be markup, they are a name.
 BRACKETS = "[bold]brackets[/bold] [/no]"
-
-
-def leaves(command: object, path: str = "") -> Iterator[str]:
-    """The commands, with those of groups inside."""
-    for name, inner in getattr(command, "commands", {}).items():
-        here = f"{path} {name}".strip()
-        if getattr(inner, "commands", None):
-            yield from leaves(inner, here)
-        else:
-            yield here
 
 
 COMMANDS = sorted(leaves(typer.main.get_command(app)))
@@ -107,11 +91,6 @@ SILENT = {"lock", "reacquire", "report verify"}  # on standard output
 STEADY = {
     *("identify", "get", "map", "plan", "lay", "rope", "diff", "cam check", "replay", "trim"),
     *("launches list", "launches show", "launches export"),
-}
-# What must be there whole. A spinner's text is gone when it ends.
-TERMINALS = {
-    "latin-1, 80 columns": (80, {"PYTHONIOENCODING": "latin-1"}),
-    "ascii, 40 columns": (40, {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}),
 }
 
 
@@ -186,39 +165,6 @@ def settings(port: str, **changes: str) -> dict[str, str]:
     return kept | changes
 
 
-def on_a_terminal(
-    command: str, line: list[str], columns: int, env: dict[str, str]
-) -> tuple[int, str]:
-    """Exit status, and what a terminal of this width shows."""
-    process, terminal = pty.fork()
-    if process == 0:
-        fcntl.ioctl(1, termios.TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
-        os.chdir(ROOT)
-        os.execvpe(line[0], line, env)
-    shown = b""
-    while True:
-        try:
-            more = os.read(terminal, 65536)
-        except OSError:  # the other end is closed
-            break
-        if not more:
-            break
-        if command in SERVERS and b"ready" in more:
-            os.write(terminal, b"\x03")
-        shown += more
-    os.close(terminal)
-    _, status = os.waitpid(process, 0)
-    encoding = env.get("PYTHONIOENCODING", "ascii")
-    return os.waitstatus_to_exitcode(status), shown.decode(encoding)
-
-
-def words(text: str, *, digits: bool) -> set[str]:
-    """What must not be cut. Words, and digits where they are the same in every run."""
-    text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", text)
-    form = r"[\w./+=-]*\w" if digits else r"[A-Za-z_]{3,}"
-    return set(re.findall(form, text))
-
-
 class Line:
     """A command with its arguments."""
 
@@ -260,7 +206,7 @@ def test_what_a_pipe_gets_is_on_every_terminal_whole(command: str, line: Line, p
     said = words(piped.stdout + piped.stderr, digits=digits)
     for columns, changes in TERMINALS.values():
         env = settings(port, **changes)
-        status, shown = on_a_terminal(command, line.prepare(), columns, env)
+        status, shown = on_a_terminal(line.prepare(), columns, env)
         assert "Traceback" not in shown
         assert status == piped.returncode, shown
         missing = said - words(shown, digits=digits)
@@ -285,23 +231,7 @@ def test_a_full_disk_is_one_line(command: str, line: Line, port: str) -> None:
 @pytest.mark.parametrize("command", SERVERS)
 def test_a_server_on_a_terminal(command: str, line: Line, port: str, tmp_path: Path) -> None:
     for columns, changes in TERMINALS.values():
-        status, shown = on_a_terminal(command, line.arguments, columns, settings(port, **changes))
+        env = settings(port, **changes)
+        status, shown = on_a_terminal(line.arguments, columns, env, ctrl_c_at=b"ready")
         assert status == 0
         assert SERVERS[command].format(tmp_path) in shown
-
-
-@pytest.mark.parametrize(
-    ("name", "terminal"),
-    [(name, "latin-1, 80 columns") for name in ["", *COMMANDS]]
-    + [(name, "ascii, 40 columns") for name in ("", "plan", "conformance")],
-)
-def test_the_help_names_every_option_whole(name: str, terminal: str) -> None:
-    command = typer.main.get_command(app)
-    for part in name.split():
-        command = command.commands[part]
-    options = {option for parameter in command.params for option in parameter.opts}
-    columns, changes = TERMINALS[terminal]
-    line = [*LEVELWIND, *name.split(), "--help"]
-    status, shown = on_a_terminal("", line, columns, settings("", **changes))
-    assert status == 0, shown
-    assert {o for o in options if o.startswith("-")} <= words(shown, digits=True)
