@@ -331,9 +331,10 @@ static bool write_if_due(void)
 	return slot / 2 == LW_STORE_JOURNAL / 2;
 }
 
-#define HOURS 48
+/* The longest period of the journal is an hour: half a day has all there is in it. */
+#define HOURS 12
 
-/** Repeat something every second for two days. @return writes of the journal */
+/** Repeat something every second for so long. @return writes of the journal */
 static unsigned int writes_while_repeated(void (*repeat)(unsigned int second))
 {
 	unsigned int writes = 0;

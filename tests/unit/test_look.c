@@ -452,7 +452,7 @@ static void test_looks_do_not_wear_the_flash_out(void)
 	/* A drum that creeps below its rest: rope is laid, and more with every tick. */
 	command(LW_COMMAND_STOP);
 	rig.drum_edges_per_s = 40;
-	for (int i = 0; i < 600000; i++) {
+	for (int i = 0; i < 240000; i++) {
 		rig_tick();
 		for (int slot; (slot = rig_write_slot(0)) >= 0;) {
 			writes += slot >= LW_STORE_LOOK ? 1 : 0;
@@ -460,7 +460,7 @@ static void test_looks_do_not_wear_the_flash_out(void)
 	}
 	TEST_ASSERT_TRUE(rig.controller->speed.at_rest);
 	TEST_ASSERT_TRUE(flag(LW_FLAG_ROPE_LAID_STANDING));
-	TEST_ASSERT_INT_WITHIN(2, 20, writes); /* in ten minutes */
+	TEST_ASSERT_INT_WITHIN(1, 13, writes); /* in four minutes */
 }
 
 int main(void)

@@ -288,11 +288,11 @@ static void test_it_does_not_wear_the_flash_out(void)
 	/* A drum that creeps below its rest: another place with every tick. */
 	begin();
 	rig.drum_edges_per_s = 40;
-	for (int i = 0; i < 600000; i++) {
+	for (int i = 0; i < 240000; i++) {
 		rig_tick();
 		writes += rig_write_slot(0) >= LW_STORE_LOOK;
 	}
-	TEST_ASSERT_INT_WITHIN(2, 20, writes); /* in ten minutes */
+	TEST_ASSERT_INT_WITHIN(1, 13, writes); /* in four minutes */
 }
 
 static void test_a_move_into_a_microstep_ends_in_it(void)
