@@ -66,9 +66,11 @@ def port(target: str, simulator: Simulator | None) -> str:
 def slave(port: str) -> Iterator[Slave]:
     """The slave at rest: nothing moves, factory parameters staged and active."""
     connected = Slave(port)
-    bring_to_rest(connected)
-    yield connected
-    connected.close()
+    try:
+        bring_to_rest(connected)
+        yield connected
+    finally:  # or the port stays locked for all who come next
+        connected.close()
 
 
 @pytest.fixture

@@ -12,10 +12,13 @@ import tty
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, ClassVar
 
 import serial
 from levelwind.map_table import POINTS, Command, Flag, Mode, Point, Result, State
 from pymodbus.client import ModbusSerialClient
+from pymodbus.exceptions import ModbusIOException
+from pymodbus.pdu import ModbusPDU
 
 UNIT = 1
 NATIVE_DIR = Path(os.environ.get("LEVELWIND_NATIVE_DIR", "build/host"))
@@ -174,7 +177,14 @@ def decode(point: Point, registers: list[int]) -> int:
 
 
 class Slave:
-    """Registers by name, through pymodbus. Knows the map, nothing of the tool's code."""
+    """Registers by name, through pymodbus. Knows the map, nothing of the tool's code.
+
+    A request that the slave says it has dropped, since a busy computer let its program stand still,
+    is given again: it has done nothing.
+    """
+
+    _late: ClassVar[dict[str, int]] = {}
+    """By port: the requests that came to a program that stood still."""
 
     def __init__(self, port: str) -> None:
         self.port = port
@@ -186,12 +196,24 @@ class Slave:
     def close(self) -> None:
         self.client.close()
 
+    def _ask(self, request: Callable[..., ModbusPDU], *arguments: Any, **options: Any) -> ModbusPDU:
+        try:
+            return request(*arguments, **options, device_id=UNIT)
+        except ModbusIOException:
+            late = POINTS["late_requests"]
+            told = self.client.read_input_registers(late.address, count=late.words, device_id=UNIT)
+            before, now = self._late.get(self.port, 0), decode(late, told.registers)
+            self._late[self.port] = now
+            if now in (0, before):
+                raise
+            return self._ask(request, *arguments, **options)
+
     def read_run(self, *names: str) -> dict[str, int]:
         """Input registers that lie close together, in one request."""
         points = [POINTS[name] for name in names]
         first = min(point.address for point in points)
         count = max(point.address + point.words for point in points) - first
-        answer = self.client.read_input_registers(first, count=count, device_id=UNIT)
+        answer = self._ask(self.client.read_input_registers, first, count=count)
         assert not answer.isError(), f"{names}: {answer}"
         return {p.name: decode(p, answer.registers[p.address - first :]) for p in points}
 
@@ -203,7 +225,7 @@ class Slave:
             "input": self.client.read_input_registers,
             "holding": self.client.read_holding_registers,
         }[space]
-        answer = function(point.address + offset, count=point.words, device_id=UNIT)
+        answer = self._ask(function, point.address + offset, count=point.words)
         assert not answer.isError(), f"{name}: {answer}"
         return decode(point, answer.registers)
 
@@ -212,9 +234,9 @@ class Slave:
         point = POINTS[name]
         words = [(value >> (16 * (point.words - 1 - i))) & 0xFFFF for i in range(point.words)]
         if function == 6 or (function is None and point.words == 1):
-            answer = self.client.write_register(point.address, words[0], device_id=UNIT)
+            answer = self._ask(self.client.write_register, point.address, words[0])
         else:
-            answer = self.client.write_registers(point.address, words, device_id=UNIT)
+            answer = self._ask(self.client.write_registers, point.address, words)
         return answer.exception_code if answer.isError() else 0
 
     def command(self, command: Command) -> Result:
@@ -229,7 +251,7 @@ class Slave:
         return Result(self.read("command_result"))
 
     def flag(self, flag: Flag) -> bool:
-        answer = self.client.read_discrete_inputs(int(flag), count=1, device_id=UNIT)
+        answer = self._ask(self.client.read_discrete_inputs, int(flag), count=1)
         assert not answer.isError()
         return answer.bits[0]
 
