@@ -10,7 +10,8 @@ from levelwind.commission.guide import STEPS
 from levelwind.errors import ToolError
 from levelwind.map_table import Command
 from levelwind.simulate import machine
-from machines import MOTORS, RIGHT, WRONG, some
+from machines import MOTORS, WRONG, some
+from right_machines import RIGHT
 from winch import Winch, hands
 from world import World
 
