@@ -244,10 +244,16 @@ static void test_reason_switches_crossed(void)
 	params.switch_minus_um = 74000;
 	params.centre_position_um = 73000;
 	assert_refused(LW_REASON_SWITCHES_CROSSED, LW_ADDRESS_SWITCH_MINUS_UM, 74000, 73390);
+	params.switch_minus_um = 73400; /* as far apart as both may be off together */
+	assert_refused(LW_REASON_SWITCHES_CROSSED, LW_ADDRESS_SWITCH_MINUS_UM, 73400, 73390);
 	/* The limit of this rule; the ramps need room as well. */
 	params.switch_minus_um = 73390;
 	TEST_ASSERT_EQUAL_INT(-EINVAL, lw_params_derive(&params, &derived, &why));
 	TEST_ASSERT_EQUAL_UINT16(LW_REASON_RAMP_DOES_NOT_FIT, why.reason);
+	/* Where not even the steepest fits, that is the limit. */
+	params.expert_mode = 1;
+	params.raw_reversal_minus_usteps = 7000;
+	assert_refused(LW_REASON_RAMP_DOES_NOT_FIT, LW_ADDRESS_RAW_NR, params.raw_nr, 1);
 }
 
 static void test_reason_overshoot_beyond_flange(void)

@@ -396,6 +396,12 @@ static void test_what_may_be_asked_meanwhile(void)
 	TEST_ASSERT_EQUAL_INT(LW_STATE_UNINDEXED, rig.controller->state);
 	assert_command(LW_COMMAND_REACQUIRE, LW_RESULT_FAILED, LW_REASON_STOPPED);
 
+	const int32_t stands_usteps = rig.carriage_usteps;
+
+	rig.drum_edges_per_s = 20000;
+	rig_ticks(300);
+	TEST_ASSERT_EQUAL_INT32(stands_usteps, rig.carriage_usteps);
+
 	/* A stop ends it. */
 	setUp();
 	restart_and_reacquire();
