@@ -14,6 +14,7 @@ import uvicorn
 
 from levelwind.errors import ToolError
 from levelwind.line.port import Line
+from levelwind.serve.commissioning import Commissioning
 from levelwind.serve.demonstration import Demonstration
 from levelwind.serve.gateway import Gateway, Network
 from levelwind.serve.guard import PinFile, Sessions, is_loopback
@@ -124,10 +125,6 @@ def run(setting: Setting, ready: Callable[[str], None], warn: Callable[[str], No
             stack.callback(served.recorder.close)
             served.recorder.start()
         if setting.commission is not None:
-            from levelwind.serve.commissioning import (  # noqa: PLC0415 - brings matplotlib
-                Commissioning,
-            )
-
             served.commissioning = Commissioning(owner, setting.commission)
         shown = f"[{host}]" if ":" in host else host
         url = f"http://{shown}:{listening.getsockname()[1]}/"
