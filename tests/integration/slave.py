@@ -202,6 +202,8 @@ class Slave:
         except ModbusIOException:
             late = POINTS["late_requests"]
             told = self.client.read_input_registers(late.address, count=late.words, device_id=UNIT)
+            if told.isError() or len(told.registers) != late.words:
+                raise
             before, now = self._late.get(self.port, 0), decode(late, told.registers)
             self._late[self.port] = now
             if now in (0, before):
