@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
  * Step and direction outputs with the pulse made by a timer of an STM32 in one-pulse mode: no
- * waiting in the interrupt that steps. Which timer, channel and pins: the board's overlay. PWM mode 1 with preload: the output is active below the
- * compare value, which an update by software brings into force, so that the pulse begins at once.
- * By then the preloaded value is 0 again, which comes into force at the end of the period, where
- * the counter stops: a standing timer gives no pulse.
+ * waiting in the interrupt that steps. Which timer, channel and pins: the board's overlay. PWM mode
+ * 1 with preload: the output is active below the compare value, which an update by software brings
+ * into force, so that the pulse begins at once. By then the preloaded value is 0 again, which comes
+ * into force at the end of the period, where the counter stops: a standing timer gives no pulse.
  */
 #define DT_DRV_COMPAT levelwind_step_dir_stm32
 

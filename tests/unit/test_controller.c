@@ -894,9 +894,9 @@ static void test_what_moves_in_a_state_of_rest_is_stopped_and_not_known_any_more
 
 static void test_no_motion_is_taken_for_one_in_a_state_of_rest(void)
 {
-	static const uint32_t states[] = {LW_STATE_TRACKING, LW_STATE_REACQUIRING, LW_STATE_SEEKING,
-					  LW_STATE_BACKING_OFF, LW_STATE_PARKING,
-					  LW_STATE_CENTRING, LW_STATE_JOGGING};
+	static const uint32_t states[] = {
+		LW_STATE_TRACKING, LW_STATE_REACQUIRING, LW_STATE_SEEKING, LW_STATE_BACKING_OFF,
+		LW_STATE_PARKING,  LW_STATE_CENTRING,    LW_STATE_JOGGING};
 
 	for (size_t i = 0; i < sizeof(states) / sizeof(states[0]); i++) {
 		rig_prepare(0);

@@ -88,13 +88,12 @@ static void sine_and_cosine(double periods, double *sine, double *cosine)
 	const double angle = TWO_PI * (far_side ? copysign(0.5, periods) - periods : periods);
 	const double square = angle * angle;
 	const double even =
-		1.0 +
-		square * (-1.0 / 2 +
-			  square * (1.0 / 24 +
-				    square * (-1.0 / 720 +
-					      square * (1.0 / 40320 +
-							square * (-1.0 / 3628800 +
-								  square / 479001600)))));
+		1.0 + square * (-1.0 / 2 +
+				square * (1.0 / 24 +
+					  square * (-1.0 / 720 +
+						    square * (1.0 / 40320 +
+							      square * (-1.0 / 3628800 +
+									square / 479001600)))));
 
 	*sine = angle *
 		(1.0 + square * (-1.0 / 6 +

@@ -143,8 +143,8 @@ static void plan_transition(struct lw_plant_drum *drum, uint64_t begin_ns)
 {
 	const double next_ns = lw_plant_transition_ns(drum, drum->passed);
 
-	drum->transition_ns = next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)next_ns
-							    : LW_PLANT_NEVER_NS;
+	drum->transition_ns =
+		next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)next_ns : LW_PLANT_NEVER_NS;
 }
 
 void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
@@ -181,8 +181,8 @@ static inline uint32_t show(struct lw_plant *plant, int64_t transitions)
 {
 	const struct lw_plant_drum *drum = &plant->drum;
 	const uint32_t shown =
-		(uint32_t)(drum->wired_direction * (transitions + drum->extra_transitions +
-						    drum->dithered) +
+		(uint32_t)(drum->wired_direction *
+				   (transitions + drum->extra_transitions + drum->dithered) +
 			   drum->wired_offset);
 	const bool a = drum->levels[shown & 3u] >> 1;
 	const bool b = drum->levels[shown & 3u] & 1u;

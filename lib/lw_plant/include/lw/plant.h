@@ -36,7 +36,8 @@
 extern "C" {
 #endif
 
-/** Period of the mechanics integration: the pull-out is that of the equation within 1.25 % (tested). */
+/** Period of the mechanics integration: the pull-out is that of the equation within 1.25 %
+ * (tested). */
 #define LW_PLANT_SUBSTEP_NS 200000u
 
 /** Time that never comes. */
@@ -330,8 +331,8 @@ struct lw_plant_drum {
 	double moved_transitions;
 	double first_ns; /* of the substep's transitions, from its beginning */
 	double period_ns;
-	double per_ns;            /* transitions, 1 / period_ns */
-	uint32_t passed;          /* of the substep's transitions */
+	double per_ns;   /* transitions, 1 / period_ns */
+	uint32_t passed; /* of the substep's transitions */
 	const struct lw_plant_profile_point *profile;
 	size_t profile_count;
 	size_t profile_index;
@@ -574,8 +575,8 @@ static inline void lw_plant_run_end(struct lw_plant *plant, const struct lw_plan
 	drum->transitions += drum->direction * (int32_t)run->count;
 	drum->passed += run->count;
 	next_ns = lw_plant_transition_ns(drum, drum->passed);
-	drum->transition_ns = next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)next_ns
-							    : LW_PLANT_NEVER_NS;
+	drum->transition_ns =
+		next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)next_ns : LW_PLANT_NEVER_NS;
 	shown = (unsigned int)(drum->wired_direction * (drum->transitions + drum->shown_ahead) +
 			       drum->wired_offset);
 	plant->pins.encoder_a = drum->levels[shown & 3u] >> 1;
