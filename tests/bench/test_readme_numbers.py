@@ -23,7 +23,7 @@ def test_readme_has_the_recorded_numbers():
 
 
 def test_a_number_that_changes_changes_the_table():
-    assert "| 1234 times |" in table(avg=1234)
+    assert "| 1,234 times |" in table(avg=1234)
     assert table(avg=1234) != table()
 
 

@@ -7,10 +7,12 @@ import pty
 import re
 import signal
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from levelwind import interrupt
 from levelwind.conformance.line import sealed
 from levelwind.core import native
 from levelwind.errors import ToolError
@@ -40,9 +42,13 @@ def line(monkeypatch: pytest.MonkeyPatch) -> DirtyLine:
 
 @pytest.fixture(autouse=True)
 def handlers() -> Iterator[None]:
-    """The command takes the signals to itself; here it is not a process of its own."""
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    """The program takes the signals to itself; here it is not a process of its own."""
+    ending = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = {number: signal.getsignal(number) for number in ending}
+    hook = sys.unraisablehook
+    interrupt.prepare()
     yield
+    sys.unraisablehook = hook
     for number, handler in before.items():
         signal.signal(number, handler)
 

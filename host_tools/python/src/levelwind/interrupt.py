@@ -18,6 +18,8 @@ _counted = False
 
 def prepare() -> None:
     """For the whole program: whatever ends it ends it as Ctrl-C does, and is not lost."""
+    global _only_first, _counted  # noqa: PLW0603 - signals are the process's
+    _only_first = _counted = False
     if signal.getsignal(signal.SIGINT) == signal.default_int_handler:
         signal.signal(signal.SIGINT, _end)
     signal.signal(signal.SIGTERM, _end)
@@ -28,7 +30,7 @@ def prepare() -> None:
 
 def only_the_first() -> None:
     """From now on a second one does not count: it would cut off the putting back."""
-    global _only_first  # noqa: PLW0603 - signals are the process's
+    global _only_first  # noqa: PLW0603
     _only_first = True
 
 
