@@ -12,8 +12,9 @@
 #define NS_PER_MS 1000000u
 #define S_PER_NS  1e-9
 
-/** The substep in seconds. */
-#define SUBSTEP_S (LW_PLANT_SUBSTEP_NS * S_PER_NS)
+/** The substep in seconds, and how many a second has. */
+#define SUBSTEP_S      (LW_PLANT_SUBSTEP_NS * S_PER_NS)
+#define SUBSTEPS_PER_S (1e9 / LW_PLANT_SUBSTEP_NS)
 
 /** Time between two changes of a dithering encoder, or of pulses that the drum has not made. */
 #define DITHER_INTERVAL_NS 20000u

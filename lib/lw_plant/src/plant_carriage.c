@@ -49,8 +49,10 @@ void lw_plant_carriage_init(struct lw_plant_carriage *carriage,
 		.backlash_usteps = config->backlash_um * usteps_per_um,
 		.grip_usteps_per_s2 = config->coupling_grip_mm_per_s2 * usteps_per_mm,
 		.period_usteps = period,
+		.periods_per_ustep = 1.0 / period,
 		.holding_usteps_per_s2 = holding_acceleration,
-		.half_torque_usteps_per_s = config->half_torque_speed_mm_per_s * usteps_per_mm,
+		.half_torque_s_per_ustep =
+			1.0 / (config->half_torque_speed_mm_per_s * usteps_per_mm),
 		.top_s_per_ustep = config->top_speed_mm_per_s > 0.0
 					   ? 1.0 / (config->top_speed_mm_per_s * usteps_per_mm)
 					   : 0.0,
@@ -117,12 +119,11 @@ static double field_acceleration(const struct lw_plant_carriage *carriage)
 	double cosine;
 	double pull;
 
-	sine_and_cosine(lag_usteps(carriage) / carriage->period_usteps, &sine, &cosine);
+	sine_and_cosine(lag_usteps(carriage) * carriage->periods_per_ustep, &sine, &cosine);
 	pull = most * sine + carriage->damping_per_s * cosine *
 				     (carriage->field_usteps_per_s - carriage->speed_usteps_per_s);
 	pull = between(pull, -most, most);
-	return pull * (left > 0.0 ? left : 0.0) /
-	       (1.0 + speed / carriage->half_torque_usteps_per_s);
+	return pull * (left > 0.0 ? left : 0.0) / (1.0 + speed * carriage->half_torque_s_per_ustep);
 }
 
 int64_t lw_plant_carriage_pole(const struct lw_plant_carriage *carriage, double position_usteps)
@@ -152,7 +153,7 @@ static bool friction_holds(const struct lw_plant_carriage *carriage)
 
 	if (carriage->enabled && !carriage->alarm) {
 		most += carriage->holding_usteps_per_s2 *
-				fabs(lag_usteps(carriage) * TWO_PI / carriage->period_usteps) +
+				fabs(lag_usteps(carriage) * TWO_PI * carriage->periods_per_ustep) +
 			carriage->damping_per_s * fabs(carriage->field_usteps_per_s);
 	}
 	return most < carriage->friction_usteps_per_s2 * (1.0 - ROUNDING);
@@ -199,7 +200,7 @@ static void follow_rotor(struct lw_plant_carriage *carriage)
 	const double end = fmin(fmax(pushed, -carriage->flange_usteps), carriage->flange_usteps);
 
 	carriage->coupling_slip_usteps += pushed - end; /* the end stop holds the screw, too */
-	carriage->load_path_usteps_per_s = (end - carriage->load_usteps) / SUBSTEP_S;
+	carriage->load_path_usteps_per_s = (end - carriage->load_usteps) * SUBSTEPS_PER_S;
 }
 
 static void move_rotor(struct lw_plant_carriage *carriage, uint64_t begin_ns)
@@ -208,7 +209,7 @@ static void move_rotor(struct lw_plant_carriage *carriage, uint64_t begin_ns)
 
 	carriage->position_usteps += carriage->path_usteps_per_s * SUBSTEP_S;
 	carriage->last_commanded_usteps = carriage->commanded_usteps;
-	carriage->field_usteps_per_s += (steps / SUBSTEP_S - carriage->field_usteps_per_s) *
+	carriage->field_usteps_per_s += (steps * SUBSTEPS_PER_S - carriage->field_usteps_per_s) *
 					FILTERED(FIELD_SPEED_TIME_CONSTANT_S);
 	if (fabs(carriage->field_usteps_per_s) < FIELD_STANDS_USTEPS_PER_S) {
 		carriage->field_usteps_per_s = 0.0; /* a processor is slow with what comes next */
@@ -245,7 +246,7 @@ static void move_rotor(struct lw_plant_carriage *carriage, uint64_t begin_ns)
 		carriage->path_usteps_per_s = speed;
 	} else {
 		carriage->speed_usteps_per_s = 0.0;
-		carriage->path_usteps_per_s = room / SUBSTEP_S;
+		carriage->path_usteps_per_s = room * SUBSTEPS_PER_S;
 	}
 }
 

@@ -377,9 +377,10 @@ struct lw_plant_carriage {
 	double field_usteps_per_s;
 	double side_load_usteps_per_s2;
 	double period_usteps;
+	double periods_per_ustep;
 	double holding_usteps_per_s2;
-	double half_torque_usteps_per_s;
-	double top_s_per_ustep; /* 1 / top speed; 0: none */
+	double half_torque_s_per_ustep; /* 1 / the speed at which half of it is left */
+	double top_s_per_ustep;         /* 1 / top speed; 0: none */
 	double damping_per_s;
 	double friction_usteps_per_s2;
 	double flange_usteps;
