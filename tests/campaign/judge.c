@@ -515,6 +515,11 @@ static void check_pattern(struct lw_judge *judge, const struct lw_status *status
 		}
 	} else if (judge->upset) {
 		judge->following = false; /* the reversal points that are told may be wrong */
+	} else if (judge->correction_waited && screw->u == status->u && screw->m != status->m &&
+		   (screw->m - status->m) % LW_USTEP == 0) {
+		/* Left from before a hand-over or a trim, and on its way. */
+		judge->laying = false;
+		judge->following = false;
 	} else if (screw->begin != (int64_t)(status->reversal_minus_usteps + 1) * LW_USTEP ||
 		   screw->end != (int64_t)status->reversal_plus_usteps * LW_USTEP) {
 		const struct lw_judge_screw lay = judge->lay;
@@ -740,6 +745,7 @@ void lw_judge_tick(struct lw_judge *judge)
 		check_recovery(judge, status, &truth);
 	}
 	check_alarm(judge, status, &truth);
+	judge->correction_waited = flag(status, LW_FLAG_CORRECTION_PENDING);
 
 	verdict->tracking_ms += status->state == LW_STATE_TRACKING;
 	verdict->los_seen |= status->flags & los;

@@ -130,7 +130,8 @@ struct lw_judge {
 	bool visited[2]; /**< the carriage really was at the switch since the indexing began */
 	uint64_t seeking_pole_slips;
 
-	bool following; /**< `screw` is what the pins ask for */
+	bool correction_waited; /**< at the last tick, for the sweep */
+	bool following;         /**< `screw` is what the pins ask for */
 	struct lw_judge_screw screw;
 	bool laying;               /**< `lay` is where the rope belongs */
 	struct lw_judge_screw lay; /**< the same, driven by the drum itself */

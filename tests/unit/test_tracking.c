@@ -88,6 +88,49 @@ static void test_no_los_when_rocking_anywhere(void)
 	TEST_ASSERT_INT32_WITHIN(1, 0, rig_error_usteps());
 }
 
+/** Noise at the encoder, or at the switch itself, as it triggers: the last step led away from it.
+ */
+static void test_a_step_back_as_the_switch_triggers_hides_it_not(void)
+{
+	FOR_EACH_SIDE(side) {
+		for (int drum = -1; drum <= 1; drum += 2) {
+			const int out = lw_side_direction(side);
+
+			go_to_the_middle(side, drum);
+			rig_set_switch(side, RIG_SWITCH_NEVER);
+			rig_follow_to(out * 7842, out, drum * SPEED);
+			rig_turn(-drum * 4);
+			TEST_ASSERT_EQUAL_INT(-out, lw_motion_direction(&rig.controller->motion));
+			rig_set_switch(side, RIG_SWITCH_WORKS);
+			rig_turn(drum * 4);
+			rig_follow_to(out * 8010, out, drum * SPEED);
+			rig_ticks(20);
+			assert_no_los();
+			TEST_ASSERT_TRUE(rig.controller->los.triggered[side]);
+		}
+	}
+}
+
+/** It closed late, and the drum had turned back: that was not on the way to the reversal. */
+static void test_a_switch_that_closes_on_the_way_back_has_not_triggered(void)
+{
+	FOR_EACH_SIDE(side) {
+		for (int drum = -1; drum <= 1; drum += 2) {
+			const int out = lw_side_direction(side);
+
+			go_to_the_middle(side, drum);
+			rig_set_switch(side, RIG_SWITCH_NEVER);
+			rig_follow_to(out * 7990, out, drum * SPEED);
+			rig_follow_to(out * 7985, -out, -drum * 500);
+			rig_ticks(LW_DRUM_SPEED_LATELY_TICKS);
+			rig_set_switch(side, RIG_SWITCH_WORKS);
+			rig_ticks(20);
+			TEST_ASSERT_FALSE(rig.controller->los.triggered[side]);
+			assert_no_los();
+		}
+	}
+}
+
 static void test_los1_when_the_switch_does_not_trigger(void)
 {
 	FOR_EACH_SIDE(side) {
@@ -530,6 +573,8 @@ int main(void)
 	UNITY_BEGIN();
 	RUN_TEST(test_no_los_over_many_periods_in_both_directions);
 	RUN_TEST(test_no_los_when_rocking_anywhere);
+	RUN_TEST(test_a_step_back_as_the_switch_triggers_hides_it_not);
+	RUN_TEST(test_a_switch_that_closes_on_the_way_back_has_not_triggered);
 	RUN_TEST(test_los1_when_the_switch_does_not_trigger);
 	RUN_TEST(test_los1_counts_each_visit_and_keeps_the_first);
 	RUN_TEST(test_los2_re_indexes_on_either_side_with_either_drum_direction);

@@ -97,3 +97,13 @@ bool lw_carriage_moves_toward(int direction, int side)
 {
 	return direction == lw_side_direction(side);
 }
+
+bool lw_carriage_triggered_outward(const struct lw_controller *controller,
+				   const struct lw_limit_switch_trigger *at, int side)
+{
+	/* The slope is what a forward edge moves. Under a cam it moves nothing. */
+	const int64_t outward = (int64_t)at->u * at->drum_direction * lw_side_direction(side);
+
+	return lw_carriage_moves_toward(at->direction, side) ||
+	       (outward > 0 && !controller->motion.cam.on);
+}

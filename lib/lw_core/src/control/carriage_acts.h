@@ -59,4 +59,11 @@ static inline enum lw_motion_side_bit lw_carriage_side_bit(int side)
 /** Direction of the carriage's motion toward `side`: true if it moves that way. */
 bool lw_carriage_moves_toward(int direction, int side);
 
+/**
+ * Did a switch trigger on the way toward it? By the last step then, or by the drum's motion: a
+ * disturbed encoder steps back for a moment.
+ */
+bool lw_carriage_triggered_outward(const struct lw_controller *controller,
+				   const struct lw_limit_switch_trigger *at, int side);
+
 #endif /* LW_CARRIAGE_ACTS_H */

@@ -164,8 +164,11 @@ struct lw_limit_switch_trigger lw_controller_position(const struct lw_controller
 	const struct lw_motion *motion = &controller->motion;
 	const volatile int32_t *corrected_usteps = &motion->corrected_usteps;
 	const volatile int32_t *u = &motion->law.u;
+	const volatile uint32_t *edges = &motion->edges;
+	const int32_t lately_edges = lw_drum_speed_lately_edges(&controller->speed, *edges);
 	struct lw_limit_switch_trigger at;
 
+	at.drum_direction = (int8_t)((lately_edges > 0) - (lately_edges < 0));
 	do {
 		/* First: the members of an initializer are read in any order. */
 		at.corrected_usteps = *corrected_usteps;

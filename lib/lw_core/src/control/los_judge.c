@@ -122,7 +122,7 @@ void lw_los_judge_tick(struct lw_controller *controller, const struct lw_carriag
 	for (int side = 0; side < 2; side++) {
 		/* A trigger counts only when the carriage moves toward its switch. */
 		if (triggers[side].taken &&
-		    lw_carriage_moves_toward(triggers[side].at.direction, side)) {
+		    lw_carriage_triggered_outward(controller, &triggers[side].at, side)) {
 			judge_trigger(controller, side, &triggers[side].at);
 		}
 	}

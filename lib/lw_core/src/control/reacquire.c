@@ -158,7 +158,7 @@ void lw_reacquire_tick(struct lw_controller *controller, const struct lw_carriag
 	if (reacquire->turning) {
 		go_on(controller);
 	} else if (triggers[side].taken &&
-		   lw_carriage_moves_toward(triggers[side].at.direction, side)) {
+		   lw_carriage_triggered_outward(controller, &triggers[side].at, side)) {
 		reacquire->shift_usteps =
 			derived->switch_usteps[side] - triggers[side].at.pos_usteps;
 		go_on(controller);

@@ -15,6 +15,9 @@
 /** Ticks over which the drum speed is measured. */
 #define LW_DRUM_SPEED_TICKS 64
 
+/** Ticks that tell which way the drum turns just now. */
+#define LW_DRUM_SPEED_LATELY_TICKS 3
+
 /** State. Written by drum_speed.c alone. */
 struct lw_drum_speed {
 	uint32_t history_edges[LW_DRUM_SPEED_TICKS]; /**< odometer, low half */
@@ -36,6 +39,14 @@ void lw_drum_speed_init(struct lw_drum_speed *speed, uint64_t now_us);
  */
 void lw_drum_speed_tick(struct lw_drum_speed *speed, const struct lw_params *params, uint32_t edges,
 			bool may_turn_unseen, uint64_t now_us);
+
+/** Edges of the last ticks, net. @param edges odometer, low half, now. Interrupt safe. */
+static inline int32_t lw_drum_speed_lately_edges(const struct lw_drum_speed *speed, uint32_t edges)
+{
+	const uint32_t then = speed->next + LW_DRUM_SPEED_TICKS - LW_DRUM_SPEED_LATELY_TICKS;
+
+	return (int32_t)(edges - speed->history_edges[then % LW_DRUM_SPEED_TICKS]);
+}
 
 /** Is the drum faster than this, either way? */
 bool lw_drum_speed_exceeds(const struct lw_drum_speed *speed, uint32_t limit_edges_per_s);

@@ -32,6 +32,7 @@ struct lw_limit_switch_trigger {
 	int32_t corrected_usteps; /**< lw_motion's at that moment: what came later is not in it */
 	int32_t u;                /**< slope at that moment, Q16.16 */
 	int8_t direction;         /**< carriage direction at that moment: +1, 0, -1 */
+	int8_t drum_direction;    /**< the drum's over the last ticks: +1, 0, -1 */
 };
 
 /**
