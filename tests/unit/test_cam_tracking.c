@@ -282,6 +282,31 @@ static void test_a_switch_that_never_triggers_is_a_loss(void)
 	}
 }
 
+/** A cam goes back while the drum goes on, and the law's slope is that of before. */
+static void test_a_switch_that_closes_on_the_way_back_has_not_triggered(void)
+{
+	static const int64_t just_behind_the_turn_edges[] = {8030, 24030};
+
+	FOR_EACH_SIDE(side) {
+		for (int way = -1; way <= 1; way += 2) {
+			setUp();
+			put_in_force(CAM_TABLE(wide));
+			use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
+			track();
+			rig.controller->motion.law.u = way * rig.controller->derived->ks;
+			rig_set_switch(side, RIG_SWITCH_NEVER);
+			rig_drive(just_behind_the_turn_edges[side] - net_edges());
+			TEST_ASSERT_EQUAL_INT(-lw_side_direction(side),
+					      lw_motion_direction(&rig.controller->motion));
+			rig_set_switch(side, RIG_SWITCH_WORKS);
+			TEST_ASSERT_TRUE(rig_contact_no(side));
+			rig_ticks(20);
+			TEST_ASSERT_TRUE(rig.controller->limit[side].active);
+			TEST_ASSERT_FALSE(rig.controller->los.triggered[side]);
+		}
+	}
+}
+
 static void test_a_switch_elsewhere_is_a_loss_that_is_not_corrected(void)
 {
 	put_in_force(CAM_TABLE(wide));
@@ -411,6 +436,7 @@ int main(void)
 	RUN_TEST(test_a_relative_start_beyond_a_flange_is_not_made);
 	RUN_TEST(test_switches_in_their_places_are_no_loss);
 	RUN_TEST(test_a_switch_that_never_triggers_is_a_loss);
+	RUN_TEST(test_a_switch_that_closes_on_the_way_back_has_not_triggered);
 	RUN_TEST(test_a_switch_elsewhere_is_a_loss_that_is_not_corrected);
 	RUN_TEST(test_overtravel_blocks_and_stops);
 	RUN_TEST(test_a_trim_does_not_move_it);
