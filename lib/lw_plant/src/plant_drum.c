@@ -139,14 +139,6 @@ static double next_speed_milli_rpm(struct lw_plant_drum *drum, uint64_t begin_ns
 				     : drum->speed_milli_rpm + copysign(most, missing);
 }
 
-static void plan_transition(struct lw_plant_drum *drum, uint64_t begin_ns)
-{
-	const double next_ns = lw_plant_transition_ns(drum, drum->passed);
-
-	drum->transition_ns =
-		next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)next_ns : LW_PLANT_NEVER_NS;
-}
-
 void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 {
 	double end_milli_rpm = next_speed_milli_rpm(drum, begin_ns);
@@ -174,7 +166,7 @@ void lw_plant_drum_substep(struct lw_plant_drum *drum, uint64_t begin_ns)
 		missing = 0.0; /* the last substep's have missed its end by a rounding error */
 	}
 	drum->first_ns = missing * drum->period_ns;
-	plan_transition(drum, begin_ns);
+	lw_plant_plan_transition(drum, begin_ns);
 }
 
 static inline uint32_t show(struct lw_plant *plant, int64_t transitions)
@@ -245,7 +237,7 @@ uint32_t lw_plant_drum_transition(struct lw_plant *plant)
 
 	drum->transitions += drum->direction;
 	drum->passed++;
-	plan_transition(drum, substep_begin_ns(plant));
+	lw_plant_plan_transition(drum, substep_begin_ns(plant));
 	return show(plant, shown_transitions(drum)) | pass_index(plant);
 }
 

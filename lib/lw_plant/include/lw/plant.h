@@ -493,6 +493,15 @@ static inline double lw_plant_transition_ns(const struct lw_plant_drum *drum, ui
 	return drum->first_ns + n * drum->period_ns;
 }
 
+/** @brief Note when the next transition comes, if the substep that begins at begin_ns has one. */
+static inline void lw_plant_plan_transition(struct lw_plant_drum *drum, uint64_t begin_ns)
+{
+	const double next_ns = lw_plant_transition_ns(drum, drum->passed);
+
+	drum->transition_ns =
+		next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)next_ns : LW_PLANT_NEVER_NS;
+}
+
 /**
  * A run of transitions that no fault touches, and nothing lies between: most events by far. They
  * are taken together; lw_plant_run_end() gives them to the plant.
@@ -567,7 +576,6 @@ static inline void lw_plant_run_end(struct lw_plant *plant, const struct lw_plan
 	const uint64_t begin_ns = plant->substep_ns - LW_PLANT_SUBSTEP_NS;
 	const int32_t spacing = drum->transitions_per_encoder_rev;
 	int32_t past_index = drum->past_index + drum->direction * (int32_t)run->count % spacing;
-	double next_ns;
 	unsigned int shown;
 
 	past_index += past_index < 0 ? spacing : past_index >= spacing ? -spacing : 0;
@@ -575,9 +583,7 @@ static inline void lw_plant_run_end(struct lw_plant *plant, const struct lw_plan
 	drum->past_index = past_index;
 	drum->transitions += drum->direction * (int32_t)run->count;
 	drum->passed += run->count;
-	next_ns = lw_plant_transition_ns(drum, drum->passed);
-	drum->transition_ns =
-		next_ns < LW_PLANT_SUBSTEP_NS ? begin_ns + (uint32_t)next_ns : LW_PLANT_NEVER_NS;
+	lw_plant_plan_transition(drum, begin_ns);
 	shown = (unsigned int)(drum->wired_direction * (drum->transitions + drum->shown_ahead) +
 			       drum->wired_offset);
 	plant->pins.encoder_a = drum->levels[shown & 3u] >> 1;
