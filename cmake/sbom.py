@@ -12,6 +12,7 @@ import contextlib
 import hashlib
 import io
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -24,8 +25,10 @@ ZEPHYR_REMOTE = "https://github.com/zephyrproject-rtos/zephyr"
 
 
 def revision(folder: Path) -> str | None:
-    """The commit of a checkout, if the folder is one."""
+    """The commit of a checkout, if the folder is one and git is at hand."""
     command = ["git", "-C", folder, "rev-parse", "HEAD"]
+    if shutil.which("git") is None:
+        return None
     run = subprocess.run(command, check=False, capture_output=True, text=True)
     return run.stdout.strip() if run.returncode == 0 else None
 

@@ -290,8 +290,9 @@ static bool make_machine(struct simulator *simulator, struct lw_plant_config *ma
 		lw_store_init(store);
 		for (unsigned int slot = 0; options->storage != NULL && slot < LW_STORE_SLOTS;
 		     slot++) {
-			lw_store_load(store, slot, bytes,
-				      read_slot(simulator, slot, bytes, sizeof(bytes)));
+			const size_t length = read_slot(simulator, slot, bytes, sizeof(bytes));
+
+			lw_store_load(store, slot, bytes, length);
 		}
 		lw_machine_of_params(&store->params, machine);
 	}

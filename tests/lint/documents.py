@@ -7,12 +7,12 @@ the core): it is there if some file's path ends with it.
 
 import os
 import re
-import subprocess
 import sys
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from told import tell
+from tree import files_of
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -32,14 +32,6 @@ SOURCES = (".c", ".h", ".py", ".js", ".html", ".yaml", ".conf", ".cmake", ".txt"
 # What is made by running something is not there yet.
 MADE = ("out/", "build/", "/", "~", "../", ".venv")
 PLACEHOLDER = re.compile(r"[A-Z]{4,}|\.\.\.|<|FILE|NAME")
-
-
-def tracked(root: Path) -> list[str]:
-    listed = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard"],
-        cwd=root, capture_output=True, text=True, check=True,
-    ).stdout.split("\n")  # fmt: skip
-    return [name for name in listed if name]
 
 
 class Tree:
@@ -99,7 +91,7 @@ def problems(document: str, text: str, tree: Tree, commands: Iterable[str]) -> I
 
 
 def check(root: Path) -> Iterator[str]:
-    files = tracked(root)
+    files = list(files_of(root))
     sources = [root / file for file in files if file.endswith(SOURCES) and (root / file).is_file()]
     names = {name for path in sources for name in NAME.findall(path.read_text(encoding="utf-8"))}
     tree = Tree(files, names)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every source says under which licence it is, in its first lines: SPDX-License-Identifier."""
 
-import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+
+from tree import files_of
 
 ROOT = Path(__file__).resolve().parents[2]
 LICENSE = "Apache-2.0"
@@ -25,11 +26,7 @@ def has_line(text: str, line: str) -> bool:
 
 
 def sources(root: Path) -> Iterator[tuple[Path, str]]:
-    listed = subprocess.run(
-        ["git", "ls-files", "-co", "--exclude-standard"],
-        cwd=root, capture_output=True, text=True, check=True,
-    ).stdout.splitlines()  # fmt: skip
-    for name in listed:
+    for name in files_of(root):
         path = root / name
         line = line_of(path)
         if line and path.is_file() and not path.is_symlink():

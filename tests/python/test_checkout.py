@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fresh clone has the bytes of the repository, also where git is told to write CR LF."""
 
+import shutil
 import subprocess
 from collections.abc import Iterator
 from io import BytesIO
@@ -28,7 +29,9 @@ def blobs(clone: Path, names: list[str]) -> Iterator[bytes]:
         assert told.read(1) == b"\n"
 
 
-@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="no clone of the repository")
+@pytest.mark.skipif(
+    not (ROOT / ".git").exists() or shutil.which("git") is None, reason="no clone, or no git"
+)
 @pytest.mark.parametrize("autocrlf", ["true", "input", "false"])
 def test_no_line_of_a_clone_ends_otherwise_than_in_the_repository(
     tmp_path: Path, autocrlf: str

@@ -43,7 +43,8 @@ void lw_drum_speed_tick(struct lw_drum_speed *speed, const struct lw_params *par
 /** Edges of the last ticks, net. @param edges odometer, low half, now. Interrupt safe. */
 static inline int32_t lw_drum_speed_lately_edges(const struct lw_drum_speed *speed, uint32_t edges)
 {
-	const uint32_t then = speed->next + LW_DRUM_SPEED_TICKS - LW_DRUM_SPEED_LATELY_TICKS;
+	const uint32_t then =
+		speed->next + (uint32_t)LW_DRUM_SPEED_TICKS - LW_DRUM_SPEED_LATELY_TICKS;
 
 	return (int32_t)(edges - speed->history_edges[then % LW_DRUM_SPEED_TICKS]);
 }
