@@ -422,6 +422,144 @@ static void test_a_queued_table_gets_the_steps_that_it_asks_for(void)
 	}
 }
 
+/** Stop, and follow again: what was under way before is of no account. */
+static void follow_anew(void)
+{
+	rig_rest();
+	command(LW_COMMAND_STOP);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_TRACK));
+	rig_run_to(LW_STATE_TRACKING);
+}
+
+static void test_a_start_elsewhere_goes_on_into_the_rows_of_there(void)
+{
+	const struct lw_cam_motion *cam = &rig.device.controller.motion.cam;
+
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	rig_rest();
+	command(LW_COMMAND_STOP);
+	rig_turn(2500);
+	follow_anew();
+	/* The first edges come before the next tick does: what they lead into is prepared. */
+	TEST_ASSERT_EQUAL_UINT32(LW_CAM_RING_SLOTS, cam->ring.count);
+	for (int i = 0; i < 40; i++) {
+		rig_drive(100);
+		assert_on_hill(0);
+	}
+	/* And goes on to be. */
+	TEST_ASSERT_LESS_THAN_UINT32(cam->ring.count, cam->cam.serial + 1 - cam->ring.begin);
+}
+
+static void test_a_table_that_waited_for_the_end_of_a_cycle_waits_no_more_after_a_stop(void)
+{
+	struct lw_cam_bank flat;
+
+	follow_hill(LW_CAM_START_ABSOLUTE);
+	flat = cam_bank((struct lw_cam_table){.row_count = 2, .rows = {{0, 40}, {4000, 40}}});
+	lw_cam_queue(rig.controller, &flat);
+	follow_anew();
+	rig_drive(4500);
+	assert_on_hill(0);
+}
+
+static void test_a_cam_may_reach_the_flanges(void)
+{
+	/* A relative start begins in the middle, which its first row is. */
+	static const enum lw_cam_start starts[] = {LW_CAM_START_ABSOLUTE, LW_CAM_START_RELATIVE};
+	const struct lw_params *params = &rig.device.active;
+	const int32_t plus = lw_params_um_to_usteps(params, params->flange_plus_um);
+	const int32_t minus = lw_params_um_to_usteps(params, params->flange_minus_um);
+
+	for (int i = 0; i < 2; i++) {
+		for (int32_t beyond = 0; beyond <= i; beyond++) {
+			const int32_t first = i * 40;
+			int32_t from;
+
+			setUp();
+			TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_CENTRE));
+			command(LW_COMMAND_INDEX);
+			rig_run_to(LW_STATE_CENTRED);
+			TEST_ASSERT_EQUAL_INT(
+				0, write_register(LW_ADDRESS_CAM_START, (int32_t)starts[i]));
+			command(LW_COMMAND_APPLY);
+			from = i * (pos_usteps() - first);
+			put_in_force((struct lw_cam_table){.row_count = 4,
+							   .rows = {{0, first},
+								    {20000, plus - from + beyond},
+								    {60000, minus - from},
+								    {80000, first}}});
+			use_cam(starts[i], LW_CAM_AXIS_CARRIAGE);
+			TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_TRACK));
+			rig_ticks(1000);
+			TEST_ASSERT_EQUAL_INT32(beyond ? LW_REASON_CAM_BEYOND_FLANGE
+						       : LW_REASON_NONE,
+						status()->cam_reason);
+			TEST_ASSERT_EQUAL(!beyond, status()->state == LW_STATE_TRACKING);
+		}
+	}
+}
+
+static void test_what_one_edge_makes_good_needs_no_move(void)
+{
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_CENTRE));
+	command(LW_COMMAND_INDEX);
+	rig_run_to(LW_STATE_CENTRED);
+	for (int32_t off_usteps = -LW_CAM_STEPS_PER_EDGE_MAX - 1;
+	     off_usteps <= LW_CAM_STEPS_PER_EDGE_MAX + 1; off_usteps++) {
+		const int32_t slave = pos_usteps() + off_usteps;
+		int steps_max;
+
+		put_in_force(
+			(struct lw_cam_table){.row_count = 2, .rows = {{0, slave}, {1000, slave}}});
+		use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
+		TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_TRACK));
+		rig_tick();
+		steps_max = rig.controller->motion.cam.steps_max;
+		TEST_ASSERT_TRUE(0 < steps_max && steps_max < LW_CAM_STEPS_PER_EDGE_MAX + 1);
+		TEST_ASSERT_EQUAL_INT(-steps_max <= off_usteps && off_usteps <= steps_max
+					      ? LW_STATE_TRACKING
+					      : LW_STATE_CENTRING,
+				      rig.controller->state);
+		rig_run_to(LW_STATE_TRACKING);
+		rig_drive(2);
+		TEST_ASSERT_EQUAL_INT32(slave, pos_usteps());
+		rig_rest();
+		TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_CENTRE));
+		rig_run_to(LW_STATE_CENTRED);
+	}
+}
+
+/** The judgement of the switches asks it for reversals. */
+static void test_a_cam_has_the_window_of_the_pattern_and_a_slope(void)
+{
+	struct lw_law_window expected;
+
+	put_in_force(CAM_TABLE(hill));
+	use_cam(LW_CAM_START_ABSOLUTE, LW_CAM_AXIS_CARRIAGE);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_CENTRE));
+	command(LW_COMMAND_INDEX);
+	rig_run_to(LW_STATE_CENTRED);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_TRACK));
+	rig_run_to(LW_STATE_TRACKING); /* after two moves: no window of before is left */
+	expected = lw_params_window(&rig.device.active, rig.controller->derived, 0, 0);
+	TEST_ASSERT_EQUAL_MEMORY(&expected, rig.controller->motion.window, sizeof(expected));
+	TEST_ASSERT_EQUAL_INT32(LW_USTEP, rig.controller->motion.law.u);
+}
+
+static void test_a_trim_that_waits_is_no_request_to_a_cam(void)
+{
+	put_in_force(CAM_TABLE(hill));
+	command(LW_COMMAND_INDEX);
+	rig.drum_edges_per_s = 1000;
+	rig_run_to(LW_STATE_READY);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_MINUS_UM, 300));
+	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_WINDOW, rig.controller->motion.requests);
+	use_cam(LW_CAM_START_RELATIVE, LW_CAM_AXIS_FREE); /* which may begin at the flange */
+	rig.drum_edges_per_s = 0;
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -444,5 +582,11 @@ int main(void)
 	RUN_TEST(test_a_free_axis_is_geared_and_ends_at_0);
 	RUN_TEST(test_an_absolute_start_of_a_free_axis_is_refused);
 	RUN_TEST(test_a_queued_table_gets_the_steps_that_it_asks_for);
+	RUN_TEST(test_a_start_elsewhere_goes_on_into_the_rows_of_there);
+	RUN_TEST(test_a_table_that_waited_for_the_end_of_a_cycle_waits_no_more_after_a_stop);
+	RUN_TEST(test_a_cam_may_reach_the_flanges);
+	RUN_TEST(test_what_one_edge_makes_good_needs_no_move);
+	RUN_TEST(test_a_cam_has_the_window_of_the_pattern_and_a_slope);
+	RUN_TEST(test_a_trim_that_waits_is_no_request_to_a_cam);
 	return UNITY_END();
 }

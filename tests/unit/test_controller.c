@@ -934,6 +934,43 @@ static void test_what_has_ended_can_be_acknowledged(void)
 	}
 }
 
+static void test_a_switch_is_told_which_way_the_drum_has_turned_lately(void)
+{
+	for (int edges = -2; edges <= 2; edges++) {
+		rig_prepare(0);
+		rig_power_up();
+		rig_turn(edges);
+		TEST_ASSERT_EQUAL_INT8((edges > 0) - (edges < 0),
+				       lw_controller_position(rig.controller).drum_direction);
+	}
+}
+
+static void test_rope_laid_before_an_index_is_of_another_stand(void)
+{
+	rig_power_up();
+	rig_drive(719);
+	rig_rest();
+	rig_index();
+	rig_run_to(LW_STATE_PARKING);
+	rig.controller->drum_watch.running = true; /* no hand-over */
+	rig_run_to(LW_STATE_READY);
+	rig_drive(719);
+	TEST_ASSERT_FALSE(rig.controller->rope.set);
+	rig_drive(1);
+	TEST_ASSERT_TRUE(rig.controller->rope.set);
+}
+
+static void test_no_rope_at_all_may_be_told(void)
+{
+	rig.params.rope_diameter_um = 5000;
+	rig.params.drum_core_diameter_um = 300000;
+	rig.params.rope_packing_permille = 900;
+	rig_power_up();
+	TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_set_rope(rig.controller, 0, &why));
+	assert_refused(LW_REASON_ROPE_LENGTH_MISSING,
+		       lw_controller_allow_set_rope(rig.controller, -1, &why));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -985,5 +1022,8 @@ int main(void)
 	RUN_TEST(test_what_moves_in_a_state_of_rest_is_stopped_and_not_known_any_more);
 	RUN_TEST(test_no_motion_is_taken_for_one_in_a_state_of_rest);
 	RUN_TEST(test_what_has_ended_can_be_acknowledged);
+	RUN_TEST(test_a_switch_is_told_which_way_the_drum_has_turned_lately);
+	RUN_TEST(test_rope_laid_before_an_index_is_of_another_stand);
+	RUN_TEST(test_no_rope_at_all_may_be_told);
 	return UNITY_END();
 }

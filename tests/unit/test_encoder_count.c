@@ -275,9 +275,14 @@ static void test_a_turn_of_the_slope_tells_the_next_direction(void)
 	start(2, 0, 0, KS);
 	turn(2);
 	TEST_ASSERT_EQUAL_INT(0, lw_controller_turns_to(&together, 1));
+	/* From the border on, while there is any slope. */
 	together.motion.law.rel = together.motion.law.span;
-	together.motion.law.u = 0;
-	TEST_ASSERT_EQUAL_INT(0, lw_controller_turns_to(&together, 1));
+	for (int u = -1; u <= 1; u++) {
+		together.motion.law.u = u;
+		TEST_ASSERT_EQUAL_INT((u > 0) - (u < 0), lw_controller_turns_to(&together, 1));
+		TEST_ASSERT_EQUAL_INT((u < 0) - (u > 0), lw_controller_turns_to(&together, -1));
+	}
+	together.motion.law.u = KS;
 	together.motion.law.open_span = 0;
 	TEST_ASSERT_EQUAL_INT(0, lw_controller_turns_to(&together, 1));
 }

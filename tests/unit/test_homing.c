@@ -84,6 +84,26 @@ static void test_a_trigger_on_the_last_microstep_of_the_ramp(void)
 	}
 }
 
+static void test_a_trigger_on_the_first_microstep_after_the_ramp(void)
+{
+	FOR_EACH_SIDE(side) {
+		const int direction = lw_side_direction(side);
+
+		rig_prepare(direction * 7838);
+		rig.params.expert_mode = 1;
+		rig.params.raw_ka = 100;
+		rig.params.raw_nr = 37;
+		rig.params.index_switch = side;
+		rig_power_up();
+		rig_index();
+		while (rig.controller->state == LW_STATE_SEEKING) {
+			TEST_ASSERT_EQUAL_INT(LW_HOMING_SEEKING, rig.controller->homing.phase);
+			rig_tick();
+		}
+		TEST_ASSERT_EQUAL_INT(LW_STATE_INDEX_REVERSAL, rig.controller->state);
+	}
+}
+
 static void test_states_of_an_index_in_order(void)
 {
 	static const enum lw_state states[] = {LW_STATE_BACKING_OFF,    LW_STATE_SEEKING,
@@ -144,11 +164,14 @@ static void test_without_ticks_the_edge_timer_moves_nothing_after_50_ms(void)
 static void test_no_switch_within_the_travel(void)
 {
 	rig.switches[LW_PLUS] = RIG_SWITCH_NEVER;
+	rig.params.index_rate_edges_per_s = 2000; /* less than a microstep in a tick */
 	rig_power_up();
 	rig_index();
 	rig_run_to_fault(LW_FAULT_INDEX_NO_SWITCH);
-	/* Not farther than the mechanism can be long. */
+	/* Not farther than the mechanism can be long, and the ramp. */
 	TEST_ASSERT_INT32_WITHIN(300, 18000 + 250, rig.carriage_usteps);
+	TEST_ASSERT_EQUAL_INT32(18000 + rig.derived.overshoot_q16 / LW_USTEP + 2 + 1,
+				lw_law_pos_usteps(lw_motion_m(&rig.controller->motion)));
 }
 
 static void test_no_switch_because_nothing_moves(void)
@@ -179,6 +202,10 @@ static void test_wrong_switch_while_backing_off(void)
 	rig_ticks(30);
 	rig_set_switch(LW_PLUS, RIG_SWITCH_NEVER);
 	rig_set_switch(LW_MINUS, RIG_SWITCH_ALWAYS);
+	while (rig.controller->state == LW_STATE_BACKING_OFF) {
+		rig_tick();
+	}
+	TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state); /* at once */
 	rig_run_to_fault(LW_FAULT_INDEX_WRONG_SWITCH);
 }
 
@@ -231,11 +258,12 @@ static void test_the_switch_does_not_release(void)
 {
 	rig_prepare(7000);
 	rig.switches[LW_PLUS] = RIG_SWITCH_ALWAYS;
+	rig.params.index_rate_edges_per_s = 2000; /* less than a microstep in a tick */
 	rig_power_up();
 	rig_index();
 	TEST_ASSERT_EQUAL_INT(LW_STATE_BACKING_OFF, rig.controller->state);
 	rig_run_to_fault(LW_FAULT_BACK_OFF_NO_RELEASE);
-	TEST_ASSERT_INT32_WITHIN(10, 7000 - 9000, rig.carriage_usteps);
+	TEST_ASSERT_EQUAL_INT32(7000 - 9001, rig.carriage_usteps);
 }
 
 /** The other switch is found `shift` microsteps from where it was calibrated. */
@@ -629,11 +657,114 @@ static void test_no_far_switch_on_the_way_to_the_reversal_and_back(void)
 	}
 }
 
+/** What the index has asked of the next edge must not come after the ramp down has begun. */
+static void test_stop_before_the_edge_that_a_phase_waits_for(void)
+{
+	static const enum lw_motion_request requests[] = {
+		LW_MOTION_REQUEST_SWAP, LW_MOTION_REQUEST_REBASE, LW_MOTION_REQUEST_WINDOW};
+
+	for (size_t i = 0; i < sizeof(requests) / sizeof(requests[0]); i++) {
+		int32_t stopped_usteps;
+
+		rig_prepare(7900);
+		rig.params.park_at = LW_PARK_AT_POSITION;
+		rig_power_up();
+		rig_index();
+		while (rig.controller->motion.requests != requests[i]) {
+			rig_tick();
+		}
+		rig.params.index_rate_edges_per_s = 0;
+		lw_controller_stop(rig.controller);
+		rig_tick();
+		TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+		stopped_usteps = rig.carriage_usteps;
+		rig.params.index_rate_edges_per_s = 10000;
+		rig_run_to(LW_STATE_UNINDEXED);
+		TEST_ASSERT_INT32_WITHIN(250, stopped_usteps, rig.carriage_usteps);
+	}
+}
+
+static void test_a_jog_that_was_let_go_is_over(void)
+{
+	rig_power_up();
+	lw_controller_jog(rig.controller, 1, rig.now_us);
+	rig_ticks(100);
+	lw_controller_jog(rig.controller, 0, rig.now_us);
+	rig_tick();
+	TEST_ASSERT_TRUE(rig.controller->moving.halting);
+	rig_run_to(LW_STATE_UNINDEXED);
+	TEST_ASSERT_FALSE(rig.controller->moving.halting || rig.controller->moving.halt_sent);
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.stop_at_rest);
+}
+
+/** Nothing but a fault of the computer can bring it about. */
+static void test_a_rest_that_no_phase_has_asked_for_ends_the_index(void)
+{
+	static const struct {
+		enum lw_state state;
+		enum lw_fault fault;
+	} cases[] = {{LW_STATE_BACKING_OFF, LW_FAULT_BACK_OFF_NO_RELEASE},
+		     {LW_STATE_SEEKING, LW_FAULT_INDEX_NO_SWITCH},
+		     {LW_STATE_INDEX_REVERSAL, LW_FAULT_INDEX_NO_SWITCH},
+		     {LW_STATE_SPAN_CHECK, LW_FAULT_INDEX_NO_SWITCH}};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		rig_prepare(7900);
+		rig_power_up();
+		rig_index();
+		rig_run_to(cases[i].state);
+		lw_motion_set_source(&rig.controller->motion, LW_EDGE_SOURCE_NONE);
+		rig_tick();
+		TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state);
+		TEST_ASSERT_EQUAL_INT(cases[i].fault, rig.controller->fault);
+	}
+}
+
+/** Ticks from now to the end of a state. */
+static int ticks_left(enum lw_state state)
+{
+	const struct rig now = rig;
+	int ticks = 0;
+
+	while (rig.controller->state == state) {
+		rig_tick();
+		ticks++;
+	}
+	rig = now;
+	return ticks;
+}
+
+static void test_a_wire_that_breaks_in_the_tick_of_a_trigger_is_the_fault(void)
+{
+	rig_power_up();
+	rig_index();
+	rig_ticks(ticks_left(LW_STATE_SEEKING) - 1);
+	rig.controller->wiring[LW_MINUS] = true;
+	rig_tick();
+	TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state);
+	rig_run_to_fault(LW_FAULT_WIRING_MINUS);
+}
+
+static void test_an_index_that_is_complete_leaves_nothing_to_be_done(void)
+{
+	rig.drum_edges_per_s = 0;
+	rig_power_up();
+	rig_index();
+	rig_run_to(LW_STATE_PARKING);
+	rig.drum_edges_per_s = 1000;
+	rig_ticks(ticks_left(LW_STATE_PARKING) - 1);
+	rig.controller->wiring[LW_MINUS] = true; /* which inhibits the launch */
+	rig_tick();
+	TEST_ASSERT_EQUAL_INT(LW_STATE_READY, rig.controller->state);
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.stop_at_rest);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
 	RUN_TEST(test_index_from_anywhere_on_either_switch_to_either_place);
 	RUN_TEST(test_a_trigger_on_the_last_microstep_of_the_ramp);
+	RUN_TEST(test_a_trigger_on_the_first_microstep_after_the_ramp);
 	RUN_TEST(test_states_of_an_index_in_order);
 	RUN_TEST(test_index_clears_los_flags_and_the_fault);
 	RUN_TEST(test_without_ticks_the_edge_timer_moves_nothing_after_50_ms);
@@ -665,5 +796,10 @@ int main(void)
 	RUN_TEST(test_parking_at_a_position_rests_in_no_reversal_on_the_way);
 	RUN_TEST(test_an_index_begins_the_ribbon_breaker_anew);
 	RUN_TEST(test_no_far_switch_on_the_way_to_the_reversal_and_back);
+	RUN_TEST(test_stop_before_the_edge_that_a_phase_waits_for);
+	RUN_TEST(test_a_jog_that_was_let_go_is_over);
+	RUN_TEST(test_a_rest_that_no_phase_has_asked_for_ends_the_index);
+	RUN_TEST(test_a_wire_that_breaks_in_the_tick_of_a_trigger_is_the_fault);
+	RUN_TEST(test_an_index_that_is_complete_leaves_nothing_to_be_done);
 	return UNITY_END();
 }

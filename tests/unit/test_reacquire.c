@@ -320,6 +320,7 @@ static void test_it_does_not_begin_with_contradicting_switches(void)
 		rig_ticks(350);
 		steps = rig.controller->motion.steps;
 		command(LW_COMMAND_REACQUIRE);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state);
 		rig_ticks(10);
 		TEST_ASSERT_EQUAL_INT(cases[i].fault, rig.controller->fault);
 		TEST_ASSERT_EQUAL_UINT32(steps, rig.controller->motion.steps);
@@ -631,6 +632,218 @@ static void test_the_way_from_rest_and_the_turn_are_on_the_orbit(void)
 	}
 }
 
+static void test_the_limits_of_what_is_allowed_are_within_it(void)
+{
+	const int32_t rest = lw_params_default.rest_edges_per_s;
+	struct lw_controller *controller;
+
+	launch(0, 1, 20000);
+	restart();
+	rig_ticks(350);
+	controller = rig.controller;
+	for (int way = -1; way <= 1; way += 2) {
+		controller->speed.edges_per_s = way * rest;
+		TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_reacquire(controller, &why));
+		controller->speed.edges_per_s = way * (rest - 1);
+		TEST_ASSERT_EQUAL_INT(-EBUSY, lw_controller_allow_reacquire(controller, &why));
+		TEST_ASSERT_EQUAL_UINT16(LW_REASON_DRUM_AT_REST, why.reason);
+	}
+	controller->speed.edges_per_s = rest;
+	controller->reacquire.stands_since_us = controller->now_us - 300000;
+	TEST_ASSERT_EQUAL_INT(0, lw_controller_allow_reacquire(controller, &why));
+	controller->reacquire.stands_since_us++;
+	TEST_ASSERT_EQUAL_INT(-EBUSY, lw_controller_allow_reacquire(controller, &why));
+	TEST_ASSERT_EQUAL_UINT16(LW_REASON_BUSY_MOVING, why.reason);
+}
+
+static void test_by_itself_until_two_seconds_after_the_restart(void)
+{
+	for (int late_us = 0; late_us <= 1; late_us++) {
+		setUp();
+		begin(1);
+		launch(0, 1, 20000);
+		restart();
+		rig_ticks(200);
+		rig.controller->reacquire.stands_since_us =
+			rig.now_us + LW_CONTROLLER_TICK_US - 2000000 - (uint64_t)late_us;
+		rig_tick();
+		TEST_ASSERT_EQUAL_INT(late_us ? LW_STATE_UNINDEXED : LW_STATE_REACQUIRING,
+				      rig.controller->state);
+	}
+}
+
+static void test_a_stop_before_holds_nothing_that_comes_after(void)
+{
+	launch(0, 1, 20000);
+	command(LW_COMMAND_STOP);
+	rig_ticks(320);
+	command(LW_COMMAND_REACQUIRE);
+	check_reacquired();
+	rig_rest();
+	/* Jogged, and let go: it follows on. */
+	lw_controller_jog(rig.controller, rig.carriage_usteps > 0 ? -1 : 1, rig.now_us);
+	rig_run_to(LW_STATE_TRACKING);
+}
+
+static void test_a_stop_lets_no_edge_move_it(void)
+{
+	int32_t from_usteps;
+
+	restart_and_reacquire();
+	rig_ticks(100);
+	lw_controller_stop(rig.controller);
+	from_usteps = rig.carriage_usteps;
+	rig_turn(20000); /* before any tick */
+	TEST_ASSERT_EQUAL_INT32(from_usteps, rig.carriage_usteps);
+}
+
+/** On the way to a side, past the ramp, the drum standing for a moment. */
+static void reacquire_to_the_sweep(int side)
+{
+	launch(0, lw_side_direction(side), 20000);
+	restart();
+	rig_ticks(350);
+	command(LW_COMMAND_REACQUIRE);
+	while (!lw_motion_in_sweep(&rig.controller->motion)) {
+		rig_tick();
+	}
+	rig.drum_edges_per_s = 0;
+	rig_tick();
+}
+
+static void test_a_place_is_taken_up_to_the_bit_and_its_rest_is_whole_microsteps(void)
+{
+	/* Behind a border, Q16.16, and what is left to be made good. */
+	static const struct {
+		int32_t behind;
+		int32_t rest_usteps;
+	} cases[] = {{-1, 0}, {0, 1}, {1, 1}, {LW_USTEP, 2}},
+	  at_minus[] = {{0, 0}, {1, -1}, {LW_USTEP, -1}, {LW_USTEP + 1, -2}};
+
+	for (size_t i = 0; i < 8; i++) {
+		const bool plus = i < 4;
+		const int32_t behind = plus ? cases[i].behind : at_minus[i - 4].behind;
+		const int32_t rest = plus ? cases[i].rest_usteps : at_minus[i - 4].rest_usteps;
+		struct lw_motion *motion;
+		struct lw_law_window window;
+		int32_t shift_usteps;
+		int32_t place;
+
+		setUp();
+		reacquire_to_the_sweep(LW_PLUS);
+		motion = &rig.controller->motion;
+		window = lw_params_window(&rig.device.active, rig.controller->derived, 0, 0);
+		place = plus ? window.sweep_end + behind : window.sweep_begin - behind;
+		/* The law counts it elsewhere, in its own sweep. */
+		shift_usteps = lw_law_pos_usteps(place) - 1000;
+		lw_motion_set_source(motion, LW_EDGE_SOURCE_NONE);
+		lw_motion_set_position(motion, motion->window, place - shift_usteps * LW_USTEP,
+				       motion->law.u);
+		lw_motion_set_source(motion, LW_EDGE_SOURCE_ENCODER);
+		rig.controller->reacquire.shift_usteps = shift_usteps;
+		rig.controller->reacquire.turning = true;
+		rig_tick();
+		TEST_ASSERT_EQUAL_INT(LW_STATE_TRACKING, rig.controller->state);
+		TEST_ASSERT_EQUAL_INT32(place - rest * LW_USTEP, lw_motion_m(motion));
+		TEST_ASSERT_TRUE(lw_motion_in_sweep(motion));
+		TEST_ASSERT_EQUAL_INT32(rest, motion->request_correction_usteps);
+		TEST_ASSERT_EQUAL_UINT8(rest != 0 ? LW_MOTION_REQUEST_CORRECTION : 0,
+					motion->requests);
+	}
+}
+
+static void test_each_is_counted_and_begins_anew(void)
+{
+	for (uint16_t times = 1; times <= 2; times++) {
+		int32_t turned_usteps = 0;
+
+		if (times == 1) {
+			launch(7780, 1, 20000);
+			restart();
+		} else {
+			/* Not from the switch, for the other end is far. */
+			rig_follow_to(0, 1, 20000);
+			command(LW_COMMAND_STOP);
+			rig.controller->moving.shift_usteps = 500; /* jogged, as it were */
+		}
+		rig_ticks(350);
+		command(LW_COMMAND_REACQUIRE);
+		TEST_ASSERT_EQUAL_UINT16(times, rig.controller->reacquire.begun);
+		TEST_ASSERT_EQUAL_INT64(0, lw_motion_read(&rig.controller->motion).pattern_edges);
+		TEST_ASSERT_EQUAL_INT32(lw_law_pos_usteps(lw_motion_m(&rig.controller->motion)),
+					rig.controller->reacquire.begin_usteps);
+		TEST_ASSERT_EQUAL_INT32(0, rig.controller->los.reacquired.position_q16);
+		while (rig.controller->state == LW_STATE_REACQUIRING) {
+			rig_tick();
+			if (rig.carriage_usteps > turned_usteps) {
+				turned_usteps = rig.carriage_usteps;
+			}
+			TEST_ASSERT_EQUAL_UINT8(LW_EDGE_SOURCE_ENCODER,
+						rig.controller->motion.source);
+		}
+		if (times == 1) {
+			/* On the ramp, and down it as far. */
+			TEST_ASSERT_TRUE(rig.controller->reacquire.turning);
+			TEST_ASSERT_INT32_WITHIN(10, 7840 + (7840 - 7780), turned_usteps);
+		}
+		TEST_ASSERT_EQUAL_UINT16(times, rig.controller->reacquire.done);
+		TEST_ASSERT_EQUAL_INT32(0, rig.controller->moving.shift_usteps);
+		check_reacquired();
+	}
+}
+
+/** A tick of the drum at rest, so many microsteps away from where it began. */
+static void tick_at(int32_t way_usteps)
+{
+	rig.controller->reacquire.begin_usteps =
+		lw_law_pos_usteps(lw_motion_m(&rig.controller->motion)) -
+		lw_side_direction(rig.controller->reacquire.side) * way_usteps;
+	rig_tick();
+}
+
+static void test_as_far_as_the_travel_and_no_farther(void)
+{
+	FOR_EACH_SIDE(side) {
+		setUp();
+		reacquire_to_the_sweep(side);
+		tick_at(rig.controller->derived->travel_usteps);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_REACQUIRING, rig.controller->state);
+		tick_at(rig.controller->derived->travel_usteps + 1);
+		TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state);
+		TEST_ASSERT_EQUAL_INT(LW_FAULT_REACQUIRE_NO_SWITCH, rig.controller->fault);
+	}
+}
+
+static void test_a_switch_may_be_left_as_late_as_it_can_be_reached(void)
+{
+	/* Between the switches are 15,680 microsteps of 18,000, and a switch releases at most 150
+	 * later. */
+	const int32_t beyond_usteps = 18000 - 15680 + 150;
+
+	launch(-7900, -1, 20000);
+	restart();
+	rig_ticks(350);
+	command(LW_COMMAND_REACQUIRE);
+	rig_ticks(2);
+	rig.drum_edges_per_s = 0;
+	rig_tick();
+	TEST_ASSERT_TRUE(rig.controller->limit[LW_MINUS].active);
+	tick_at(beyond_usteps);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_REACQUIRING, rig.controller->state);
+	tick_at(beyond_usteps + 1);
+	TEST_ASSERT_EQUAL_INT(LW_FAULT_REACQUIRE_WRONG_SWITCH, rig.controller->fault);
+}
+
+static void test_a_wire_that_breaks_as_it_is_taken_up_is_the_fault(void)
+{
+	reacquire_to_the_sweep(LW_PLUS);
+	rig.controller->reacquire.turning = true;
+	rig.controller->wiring[LW_PLUS] = true;
+	rig_tick();
+	TEST_ASSERT_EQUAL_INT(LW_STATE_FAULT, rig.controller->state);
+	TEST_ASSERT_EQUAL_INT(LW_FAULT_WIRING_PLUS, rig.controller->fault);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -650,5 +863,14 @@ int main(void)
 	RUN_TEST(test_without_a_memory_the_hand_over_s_direction_is_taken);
 	RUN_TEST(test_it_is_in_the_log_and_outlasts_a_power_cut);
 	RUN_TEST(test_the_way_from_rest_and_the_turn_are_on_the_orbit);
+	RUN_TEST(test_the_limits_of_what_is_allowed_are_within_it);
+	RUN_TEST(test_by_itself_until_two_seconds_after_the_restart);
+	RUN_TEST(test_a_stop_before_holds_nothing_that_comes_after);
+	RUN_TEST(test_a_stop_lets_no_edge_move_it);
+	RUN_TEST(test_a_place_is_taken_up_to_the_bit_and_its_rest_is_whole_microsteps);
+	RUN_TEST(test_each_is_counted_and_begins_anew);
+	RUN_TEST(test_as_far_as_the_travel_and_no_farther);
+	RUN_TEST(test_a_switch_may_be_left_as_late_as_it_can_be_reached);
+	RUN_TEST(test_a_wire_that_breaks_as_it_is_taken_up_is_the_fault);
 	return UNITY_END();
 }

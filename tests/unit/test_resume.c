@@ -143,6 +143,12 @@ static void test_without_a_power_cut_too(void)
 
 	follow_again();
 	assert_goes_on(&law);
+
+	/* Once: from there it goes on by itself. */
+	command(LW_COMMAND_STOP);
+	lw_controller_set_mode(rig.controller, LW_MODE_TRACK);
+	run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_EQUAL_UINT16(1, rig.controller->resume.taken_up);
 }
 
 static void test_a_stored_place_of_another_set_is_not_used(void)
@@ -368,6 +374,12 @@ static void test_a_state_is_taken_up_to_the_bit_or_else_the_nearest_of_the_sweep
 	assert_taken_up(1000, -ks - ka, 1000, -ks);
 	assert_taken_up(1000, ks + ka, 1000, ks);
 	assert_taken_up(1000, ks - 1, 1000, ks);
+	assert_taken_up(1000, 1, 1000, ks);
+	assert_taken_up(1000, -1, 1000, -ks);
+
+	/* Past the border, before the reversal's first edge. */
+	assert_taken_up(window.sweep_end, ks, window.sweep_end, ks);
+	assert_taken_up(window.sweep_begin - 1, -ks, window.sweep_begin - 1, -ks);
 
 	/* A reversal is entered from the sweep: by less than its slope past the border. */
 	for (int32_t j = 1; j < 2 * ks / ka; j += ks / ka / 3) {
@@ -443,6 +455,38 @@ static void test_a_carriage_that_was_moved_is_found_once(void)
 	}
 }
 
+static void test_found_as_far_away_as_a_switch_may_be_off_it_is_taken_up(void)
+{
+	for (int way = -1; way <= 1; way += 2) {
+		for (int beyond = 0; beyond <= 1; beyond++) {
+			setUp();
+			begin();
+			wind(40000, 1000);
+			command(LW_COMMAND_INDEX);
+			run_to(LW_STATE_PARKING);
+			rig.controller->moving.shift_usteps =
+				way * (rig.controller->derived->switch_tolerance_usteps + beyond);
+			run_to(LW_STATE_TRACKING);
+			TEST_ASSERT_EQUAL_UINT16(!beyond, rig.controller->resume.taken_up);
+			TEST_ASSERT_EQUAL_INT32(0, rig.controller->moving.shift_usteps);
+		}
+	}
+}
+
+static void test_a_trim_that_waits_is_in_the_pattern_that_is_taken_up(void)
+{
+	begin();
+	wind(40000, 100);
+
+	const struct lw_law law = rig.controller->motion.law;
+
+	command(LW_COMMAND_STOP);
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_TRIM_PLUS_UM, -500));
+	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_WINDOW, rig.controller->motion.requests);
+	assert_taken_up(lw_law_m(&law), law.u, lw_law_m(&law), law.u);
+	TEST_ASSERT_EQUAL_INT32(7950, lw_law_pos_usteps(rig.controller->motion.window->sweep_end));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -460,5 +504,7 @@ int main(void)
 	RUN_TEST(test_a_state_is_taken_up_to_the_bit_or_else_the_nearest_of_the_sweep);
 	RUN_TEST(test_what_is_kept_is_where_the_rope_is);
 	RUN_TEST(test_a_carriage_that_was_moved_is_found_once);
+	RUN_TEST(test_found_as_far_away_as_a_switch_may_be_off_it_is_taken_up);
+	RUN_TEST(test_a_trim_that_waits_is_in_the_pattern_that_is_taken_up);
 	return UNITY_END();
 }

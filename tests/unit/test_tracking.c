@@ -51,6 +51,11 @@ static void go_to_the_middle(int side, int drum_direction)
 	assert_no_los();
 }
 
+static int32_t sweep_end_usteps(void)
+{
+	return lw_law_pos_usteps(rig.controller->motion.window->sweep_end);
+}
+
 /** Slip of the carriage by an amount, seen by nobody. */
 static void slip(int32_t usteps)
 {
@@ -171,20 +176,69 @@ static void test_los1_when_the_switch_does_not_trigger(void)
 
 static void test_los1_counts_each_visit_and_keeps_the_first(void)
 {
+	/* The sweep ends beyond where the switch may be, or before. */
+	for (int32_t trim_um = -1000; trim_um <= 0; trim_um += 1000) {
+		struct lw_los_record first;
+
+		go_to_the_middle(LW_PLUS, 1);
+		lw_controller_set_trim(rig.controller, trim_um, 0);
+		rig_set_switch(LW_PLUS, RIG_SWITCH_NEVER);
+		rig.drum_edges_per_s = 40000;
+		for (uint16_t visit = 1; visit <= 3; visit++) {
+			rig_follow_to(8050, 1, 40000);
+			rig_follow_to(0, -1, 40000);
+			TEST_ASSERT_EQUAL_UINT16(visit, rig.controller->los.los1[LW_PLUS].count);
+			if (visit == 1) {
+				first = rig.controller->los.los1[LW_PLUS];
+			}
+		}
+		TEST_ASSERT_EQUAL_UINT32(first.time_ms, rig.controller->los.los1[LW_PLUS].time_ms);
+		TEST_ASSERT_EQUAL_INT32(first.position_q16,
+					rig.controller->los.los1[LW_PLUS].position_q16);
+	}
+}
+
+static void test_a_reversal_between_two_ticks_is_judged(void)
+{
 	go_to_the_middle(LW_PLUS, 1);
 	rig_set_switch(LW_PLUS, RIG_SWITCH_NEVER);
-	rig.drum_edges_per_s = 40000;
-	while (rig.controller->los.los1[LW_PLUS].count < 1) {
-		rig_tick();
-	}
+	rig_follow_to(7900, 1, SPEED);
+	rig_turn(3000);
+	TEST_ASSERT_TRUE(rig.carriage_usteps < 8000);
+	rig_tick();
+	TEST_ASSERT_TRUE(los1(LW_PLUS));
+}
 
-	const struct lw_los_record first = rig.controller->los.los1[LW_PLUS];
-
-	while (rig.controller->los.los1[LW_PLUS].count < 2) {
+static void test_a_switch_has_its_tolerance_to_trigger_in(void)
+{
+	/* The reversal begins before that. */
+	go_to_the_middle(LW_PLUS, 1);
+	lw_controller_set_trim(rig.controller, -1000, 0);
+	rig_set_switch(LW_PLUS, RIG_SWITCH_NEVER);
+	rig_follow_to(7930, 1, SPEED);
+	rig_rest();
+	for (int32_t usteps = 7939; usteps <= 7941; usteps++) {
+		while (lw_law_pos_usteps(lw_motion_m(&rig.controller->motion)) != usteps) {
+			rig_turn(1);
+		}
 		rig_tick();
+		TEST_ASSERT_EQUAL(usteps > 7940, los1(LW_PLUS));
 	}
-	TEST_ASSERT_EQUAL_UINT32(first.time_ms, rig.controller->los.los1[LW_PLUS].time_ms);
-	TEST_ASSERT_EQUAL_INT32(first.position_q16, rig.controller->los.los1[LW_PLUS].position_q16);
+}
+
+static void test_a_trim_that_waits_outlasts_a_re_indexing(void)
+{
+	go_to_the_middle(LW_PLUS, 1);
+	slip(-250);
+	rig_follow_to(7770, 1, SPEED);
+	lw_controller_set_trim(rig.controller, -500, 0);
+	rig_follow_to(7840, 1, SPEED);
+	rig_ticks(2);
+	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_CORRECTION | LW_MOTION_REQUEST_WINDOW,
+				rig.controller->motion.requests);
+	rig_follow_to(0, -1, SPEED);
+	TEST_ASSERT_EQUAL_INT32(7950, sweep_end_usteps());
+	TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
 }
 
 /** The carriage slips, and the switch of the side ahead triggers at a wrong position. */
@@ -377,6 +431,7 @@ static int recoveries_until_fault(int32_t los_recoveries_max, int slips)
 			rig_tick();
 			if (rig.controller->state == LW_STATE_FAULT) {
 				TEST_ASSERT_EQUAL_INT(LW_FAULT_LOS_LIMIT, rig.controller->fault);
+				TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
 				return i;
 			}
 		}
@@ -419,11 +474,6 @@ static void test_a_correction_held_is_made_when_tracking_ends(void)
 	lw_controller_set_mode(rig.controller, LW_MODE_CENTRE);
 	rig_run_to(LW_STATE_CENTRED);
 	TEST_ASSERT_INT32_WITHIN(2, 0, rig.carriage_usteps);
-}
-
-static int32_t sweep_end_usteps(void)
-{
-	return lw_law_pos_usteps(rig.controller->motion.window->sweep_end);
 }
 
 static void test_trim_in_the_sweep_comes_at_once(void)
@@ -568,6 +618,43 @@ static void test_the_pattern_is_counted_from_each_hand_over(void)
 	TEST_ASSERT_EQUAL_INT64(0, lw_motion_read(&rig.controller->motion).pattern_edges);
 }
 
+static void test_centring_a_carriage_that_is_in_the_middle(void)
+{
+	rig_track();
+	rig_follow_to(rig.derived.centre_usteps - 10, 1, SPEED);
+	while (lw_law_pos_usteps(lw_motion_m(&rig.controller->motion)) !=
+	       rig.derived.centre_usteps) {
+		rig_turn(1);
+	}
+	rig_rest();
+	lw_controller_stop(rig.controller);
+	lw_controller_set_trim(rig.controller, -500, 0);
+	TEST_ASSERT_EQUAL_UINT8(LW_MOTION_REQUEST_WINDOW, rig.controller->motion.requests);
+
+	/* At rest at once, and no longer in the pattern. */
+	lw_controller_set_mode(rig.controller, LW_MODE_CENTRE);
+	rig_tick();
+	TEST_ASSERT_EQUAL_INT(LW_STATE_CENTRED, rig.controller->state);
+	TEST_ASSERT_EQUAL_INT32(0, rig.controller->motion.law.u);
+
+	lw_controller_set_mode(rig.controller, LW_MODE_TRACK);
+	rig_run_to(LW_STATE_TRACKING);
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+	TEST_ASSERT_EQUAL_INT32(7950, sweep_end_usteps());
+	TEST_ASSERT_TRUE(law_on_orbit(&rig.controller->motion.law, rig.controller->motion.window));
+	rig_follow_to(2000, 1, SPEED);
+}
+
+static void test_a_trim_after_a_stop_at_speed_is_asked_of_nobody(void)
+{
+	rig_track();
+	rig_follow_to(0, 1, SPEED);
+	lw_controller_stop(rig.controller);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_UNINDEXED, rig.controller->state);
+	lw_controller_set_trim(rig.controller, -500, 0);
+	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -577,6 +664,9 @@ int main(void)
 	RUN_TEST(test_a_switch_that_closes_on_the_way_back_has_not_triggered);
 	RUN_TEST(test_los1_when_the_switch_does_not_trigger);
 	RUN_TEST(test_los1_counts_each_visit_and_keeps_the_first);
+	RUN_TEST(test_a_reversal_between_two_ticks_is_judged);
+	RUN_TEST(test_a_switch_has_its_tolerance_to_trigger_in);
+	RUN_TEST(test_a_trim_that_waits_outlasts_a_re_indexing);
 	RUN_TEST(test_los2_re_indexes_on_either_side_with_either_drum_direction);
 	RUN_TEST(test_los2_of_a_carriage_that_lags_is_found_in_the_reversal);
 	RUN_TEST(test_a_second_trigger_before_the_correction_is_corrected_once);
@@ -597,5 +687,7 @@ int main(void)
 	RUN_TEST(test_a_switch_that_is_still_bouncing_when_the_reversal_begins_is_waited_for);
 	RUN_TEST(test_a_trigger_at_its_tolerance_is_within_it);
 	RUN_TEST(test_the_pattern_is_counted_from_each_hand_over);
+	RUN_TEST(test_centring_a_carriage_that_is_in_the_middle);
+	RUN_TEST(test_a_trim_after_a_stop_at_speed_is_asked_of_nobody);
 	return UNITY_END();
 }
