@@ -176,7 +176,6 @@ bool lw_resume_approach(struct lw_controller *controller)
 	motion->law = law;
 	motion->requests = 0;
 	controller->on_orbit = true;
-	controller->resume.wanted = false;
-	controller->resume.taken_up++;
+	controller->resume.taken_up++; /* and once it is followed it is kept, and wanted no more */
 	return false;
 }
