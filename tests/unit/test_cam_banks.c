@@ -264,6 +264,7 @@ static void test_every_position_lies_between_the_flanges(void)
 	SET_ROWS({0, plus + 5}, {20000, 0}, {40000, plus + 5});
 	refused(LW_REASON_CAM_BEYOND_FLANGE, 1, plus + 5, plus);
 	SET_ROWS({0, minus - 5}, {20000, 0}, {40000, minus - 5});
+	bank.table.rows[3].slave = minus - 10; /* of an upload before */
 	refused(LW_REASON_CAM_BEYOND_FLANGE, 1, minus - 5, minus);
 
 	/* A relative start is judged when it is made; a free axis has no flanges. */

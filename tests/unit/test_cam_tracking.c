@@ -315,6 +315,7 @@ static void test_a_switch_elsewhere_is_a_loss_that_is_not_corrected(void)
 	rig.switch_at_usteps[LW_PLUS] -= 300;
 	rig_drive(40000);
 	TEST_ASSERT_TRUE(rig.controller->los.los2[LW_PLUS].set);
+	TEST_ASSERT_EQUAL_INT32(7540 * LW_USTEP, rig.controller->los.los2[LW_PLUS].position_q16);
 	TEST_ASSERT_FALSE(rig.controller->los.los1[LW_PLUS].set ||
 			  rig.controller->los.los1[LW_MINUS].set);
 	TEST_ASSERT_FALSE(flag(LW_FLAG_LAUNCH_PERMIT));
@@ -381,13 +382,16 @@ static void test_a_free_axis_is_geared_and_ends_at_0(void)
 	rig.switch_at_usteps[LW_PLUS] = 100; /* means nothing */
 	rig_drive(70000);
 	TEST_ASSERT_EQUAL_INT32(30000, status()->cam_position_usteps);
+	rig_ticks(100);
+	TEST_ASSERT_FALSE(flag(LW_FLAG_SWITCH_IMPLAUSIBLE));
 	TEST_ASSERT_EQUAL_INT32(10000, status()->cam_cycles);
 	rig_drive(-140000);
 	TEST_ASSERT_EQUAL_INT32(-30000, status()->cam_position_usteps);
 	TEST_ASSERT_FALSE(flag(LW_FLAG_LOS));
 	rig_rest();
 	command(LW_COMMAND_STOP);
-	TEST_ASSERT_EQUAL_INT32(0, pos_usteps());
+	TEST_ASSERT_EQUAL_INT32(0, lw_motion_m(&rig.controller->motion));
+	TEST_ASSERT_EQUAL_INT32(0, rig.controller->motion.law.u);
 }
 
 static void test_an_absolute_start_of_a_free_axis_is_refused(void)

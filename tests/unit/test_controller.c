@@ -654,6 +654,53 @@ static void test_a_stop_of_a_jog_ends_in_the_state_that_there_was(void)
 	}
 }
 
+static void test_a_fault_that_is_cleared_during_a_jog_is_not_its_end(void)
+{
+	rig_power_up();
+	rig.controller->fault = LW_FAULT_INDEX_SPAN;
+	lw_controller_jog(rig.controller, 1, rig.now_us);
+	rig_ticks(100);
+	lw_controller_clear_fault(rig.controller);
+	lw_controller_jog(rig.controller, 0, rig.now_us);
+	rig_run_to(LW_STATE_UNINDEXED);
+}
+
+static void test_a_place_on_the_orbit_is_none_once_it_is_lost(void)
+{
+	for (int fault = 0; fault < 2; fault++) {
+		rig_prepare(0);
+		rig_track();
+		lw_controller_stop(rig.controller);
+		TEST_ASSERT_TRUE(rig.controller->on_orbit);
+		if (fault) {
+			lw_controller_overtravel(rig.controller, LW_PLUS, true);
+		} else {
+			lw_controller_set_mode(rig.controller, LW_MODE_OFF);
+		}
+		rig_tick();
+		TEST_ASSERT_EQUAL_INT(fault ? LW_STATE_FAULT : LW_STATE_OFF, rig.controller->state);
+		/* Nothing to be trimmed. */
+		lw_controller_set_trim(rig.controller, -500, 0);
+		TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
+	}
+}
+
+static void test_another_mode_ends_reacquiring_at_once(void)
+{
+	int32_t stands_usteps;
+
+	rig_power_up();
+	rig.drum_edges_per_s = 20000;
+	rig_ticks(100);
+	lw_controller_reacquire(rig.controller);
+	lw_controller_set_mode(rig.controller, LW_MODE_CENTRE);
+	rig.drum_edges_per_s = 0;
+	rig_run_to(LW_STATE_UNINDEXED);
+	stands_usteps = rig.carriage_usteps;
+	rig_turn(30000);
+	TEST_ASSERT_EQUAL_INT32(stands_usteps, rig.carriage_usteps);
+}
+
 static void test_another_set_that_needs_an_index_takes_it(void)
 {
 	for (int centre = 0; centre < 2; centre++) {
@@ -971,6 +1018,55 @@ static void test_no_rope_at_all_may_be_told(void)
 		       lw_controller_allow_set_rope(rig.controller, -1, &why));
 }
 
+static void test_the_last_microstep_of_a_jog(void)
+{
+	FOR_BOTH_WAYS(direction) {
+		for (int32_t left_usteps = 0; left_usteps <= 1; left_usteps++) {
+			struct lw_motion *motion;
+
+			rig_prepare(0);
+			rig.params.park_at = LW_PARK_AT_POSITION;
+			rig_track();
+			motion = &rig.controller->motion;
+			lw_motion_set_source(motion, LW_EDGE_SOURCE_NONE);
+			lw_motion_set_position(
+				motion, motion->window,
+				((direction > 0 ? 7998 : -7997) - direction * left_usteps) *
+					LW_USTEP,
+				motion->law.u);
+			lw_motion_set_source(motion, LW_EDGE_SOURCE_ENCODER);
+			lw_controller_jog(rig.controller, direction, rig.now_us);
+			TEST_ASSERT_EQUAL_INT(left_usteps ? LW_STATE_JOGGING : LW_STATE_TRACKING,
+					      rig.controller->state);
+		}
+	}
+}
+
+static void test_each_jog_without_an_index_goes_as_far_as_the_travel(void)
+{
+	rig_power_up();
+	for (int i = 0; i < 2; i++) {
+		lw_controller_jog(rig.controller, -1, rig.now_us);
+		TEST_ASSERT_EQUAL_INT32(0, lw_law_pos_usteps(lw_motion_m(&rig.controller->motion)));
+		rig_ticks(200);
+		lw_controller_jog(rig.controller, 0, rig.now_us);
+		rig_run_to(LW_STATE_UNINDEXED);
+	}
+}
+
+static void test_a_jog_begins_where_a_correction_has_led(void)
+{
+	rig_track();
+	rig_follow_to(1000, 1, 20000);
+	rig_rest();
+	rig.controller->motion.request_correction_usteps = -300;
+	rig.controller->motion.requests = LW_MOTION_REQUEST_CORRECTION;
+	rig_place(rig.carriage_usteps - 300);
+	lw_controller_jog(rig.controller, 1, rig.now_us);
+	TEST_ASSERT_EQUAL_INT(LW_STATE_JOGGING, rig.controller->state);
+	TEST_ASSERT_INT32_WITHIN(2, 0, rig_error_usteps());
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -1010,6 +1106,9 @@ int main(void)
 	RUN_TEST(test_the_remaining_launch_inhibit_bits);
 	RUN_TEST(test_the_direction_output_can_be_inverted);
 	RUN_TEST(test_a_stop_of_a_jog_ends_in_the_state_that_there_was);
+	RUN_TEST(test_a_fault_that_is_cleared_during_a_jog_is_not_its_end);
+	RUN_TEST(test_a_place_on_the_orbit_is_none_once_it_is_lost);
+	RUN_TEST(test_another_mode_ends_reacquiring_at_once);
 	RUN_TEST(test_another_set_that_needs_an_index_takes_it);
 	RUN_TEST(test_a_master_that_is_lost_says_nothing_about_the_drum);
 	RUN_TEST(test_rope_laid_standing_is_acknowledged_after_an_index);
@@ -1025,5 +1124,8 @@ int main(void)
 	RUN_TEST(test_a_switch_is_told_which_way_the_drum_has_turned_lately);
 	RUN_TEST(test_rope_laid_before_an_index_is_of_another_stand);
 	RUN_TEST(test_no_rope_at_all_may_be_told);
+	RUN_TEST(test_the_last_microstep_of_a_jog);
+	RUN_TEST(test_each_jog_without_an_index_goes_as_far_as_the_travel);
+	RUN_TEST(test_a_jog_begins_where_a_correction_has_led);
 	return UNITY_END();
 }

@@ -119,10 +119,14 @@ static void test_refused_where_there_is_no_reversal_or_no_room(void)
 	/* No farther out than the registers can say. */
 	rig_follow_to(0, 1, 5000);
 	set_flange_minus(-200000);
-	lw_controller_set_trim(rig.controller, 19900, -19900);
+	lw_controller_set_trim(rig.controller, 19800, -19800);
+	command(LW_COMMAND_TRIM_LATE);
+	assert_trims(20000, -19800);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, write_register(LW_ADDRESS_COMMAND, LW_COMMAND_TRIM_LATE));
 	TEST_ASSERT_EQUAL_UINT16(LW_REASON_OUT_OF_RANGE, why.reason);
 	rig_follow_to(0, -1, 5000);
+	command(LW_COMMAND_TRIM_LATE);
+	assert_trims(20000, -20000);
 	TEST_ASSERT_EQUAL_INT(-EINVAL, write_register(LW_ADDRESS_COMMAND, LW_COMMAND_TRIM_LATE));
 	TEST_ASSERT_EQUAL_UINT16(LW_REASON_OUT_OF_RANGE, why.reason);
 	for (size_t i = 0; i < LW_MAP_SETPOINTS_COUNT; i++) {
@@ -206,6 +210,15 @@ static void test_a_button_is_counted_by_twenty_polls_whatever_came_before(void)
 	}
 }
 
+static void test_there_are_two_buttons(void)
+{
+	static const bool and_more[4] = {false, false, true, true};
+
+	for (int i = 0; i < 50; i++) {
+		TEST_ASSERT_EQUAL_UINT(0, lw_controller_trim_buttons(rig.controller, and_more));
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -216,5 +229,6 @@ int main(void)
 	RUN_TEST(test_a_button_is_one_step_however_it_bounces_and_however_long);
 	RUN_TEST(test_a_button_leaves_the_command_of_a_master_alone);
 	RUN_TEST(test_a_button_is_counted_by_twenty_polls_whatever_came_before);
+	RUN_TEST(test_there_are_two_buttons);
 	return UNITY_END();
 }

@@ -236,6 +236,49 @@ static void test_single_held_from_power_up_stays_actuated(void)
 	TEST_ASSERT_FALSE(limit.active);
 }
 
+static void test_single_is_triggered_by_its_own_contact_alone(void)
+{
+	use_single(LW_SWITCH_CONTACTS_SINGLE_NO);
+	/* The other one changes first, elsewhere. */
+	contacts(false, false, 100, 100000);
+	contacts(true, false, 110, 1000);
+	tick(5000);
+	assert_one_event(110);
+	/* And once more while it is held. */
+	contacts(true, true, 120, 100000);
+	tick(100000);
+	TEST_ASSERT_FALSE(lw_limit_switch_take(&limit, &trigger));
+	TEST_ASSERT_TRUE(limit.active);
+}
+
+static void test_single_chatters_when_it_does_for_longer_than_its_transit(void)
+{
+	for (uint32_t longer_us = 0; longer_us <= 1; longer_us++) {
+		use_single(LW_SWITCH_CONTACTS_SINGLE_NO);
+		contacts(true, true, 10, 100000);
+		for (int i = 0; i < 5; i++) {
+			contacts(i % 2, true, 20, i < 4 ? 4000 : 4000 + longer_us);
+		}
+		tick(0);
+		TEST_ASSERT_EQUAL(longer_us > 0, limit.wiring_fault);
+	}
+}
+
+static void test_single_is_quiet_after_its_debounce_time(void)
+{
+	for (uint32_t sooner_us = 0; sooner_us <= 1; sooner_us++) {
+		use_single(LW_SWITCH_CONTACTS_SINGLE_NO);
+		contacts(true, true, 10, 100000);
+		contacts(false, true, 10, 4000);
+		contacts(true, true, 10, 5000 - sooner_us); /* restless since here, or before */
+		for (int i = 0; i < 4; i++) {
+			contacts(i % 2, true, 20, 4000);
+		}
+		tick(0);
+		TEST_ASSERT_EQUAL(sooner_us > 0, limit.wiring_fault);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -248,5 +291,8 @@ int main(void)
 	RUN_TEST(test_single_no);
 	RUN_TEST(test_single_nc);
 	RUN_TEST(test_single_held_from_power_up_stays_actuated);
+	RUN_TEST(test_single_is_triggered_by_its_own_contact_alone);
+	RUN_TEST(test_single_chatters_when_it_does_for_longer_than_its_transit);
+	RUN_TEST(test_single_is_quiet_after_its_debounce_time);
 	return UNITY_END();
 }

@@ -314,6 +314,8 @@ static void test_reason_centre_outside(void)
 	params.centre_position_um = -90000;
 	assert_refused(LW_REASON_CENTRE_OUTSIDE, LW_ADDRESS_CENTRE_POSITION_UM, -90000, -78400);
 	assert_limit_is_the_border(&params.centre_position_um, 10, -10);
+	params.centre_position_um = -78400;
+	assert_refused(LW_REASON_CENTRE_OUTSIDE, LW_ADDRESS_CENTRE_POSITION_UM, -78400, -78400);
 }
 
 static void test_reason_ramp_does_not_fit(void)
@@ -339,6 +341,11 @@ static void test_reason_position_overflow(void)
 	/* 10 um per microstep: 327 mm. */
 	params.flange_plus_um = 327001;
 	assert_refused(LW_REASON_POSITION_OVERFLOW, LW_ADDRESS_FLANGE_PLUS_UM, 327001, 327000);
+	params.flange_plus_um = 327000;
+	assert_refused(LW_REASON_TRAVEL_TOO_SHORT, LW_ADDRESS_TRAVEL_UM, 180000, 327000 + 82500);
+	setUp();
+	params.flange_minus_um = -327000;
+	assert_refused(LW_REASON_TRAVEL_TOO_SHORT, LW_ADDRESS_TRAVEL_UM, 180000, 327000 + 82500);
 	setUp();
 	params.park_position_um = -400000;
 	assert_refused(LW_REASON_POSITION_OVERFLOW, LW_ADDRESS_PARK_POSITION_UM, -400000, -327000);
@@ -346,6 +353,10 @@ static void test_reason_position_overflow(void)
 	setUp();
 	params.reversal_plus_um = 325000;
 	assert_refused(LW_REASON_POSITION_OVERFLOW, LW_ADDRESS_REVERSAL_PLUS_UM, 325000, 324510);
+	params.reversal_plus_um = 324510;
+	assert_refused(LW_REASON_OVERSHOOT_BEYOND_FLANGE_PLUS, LW_ADDRESS_FLANGE_PLUS_UM, 82500,
+		       327000);
+	params.reversal_plus_um = 325000;
 	params.expert_mode = 1;
 	params.raw_reversal_plus_usteps = 32000;
 	params.raw_nr = 2800;
@@ -354,6 +365,10 @@ static void test_reason_position_overflow(void)
 	setUp();
 	params.reversal_minus_um = -325000;
 	assert_refused(LW_REASON_POSITION_OVERFLOW, LW_ADDRESS_REVERSAL_MINUS_UM, -325000, -324510);
+	params.reversal_minus_um = -324510;
+	assert_refused(LW_REASON_OVERSHOOT_BEYOND_FLANGE_MINUS, LW_ADDRESS_FLANGE_MINUS_UM, -82500,
+		       -327000);
+	params.reversal_minus_um = -325000;
 	params.expert_mode = 1;
 	params.raw_reversal_minus_usteps = -32000;
 	params.raw_nr = 2800;
@@ -824,6 +839,21 @@ static void test_the_crc_names_what_moves_the_carriage(void)
 	}
 }
 
+static void test_rope_is_described_by_all_that_it_takes_or_not_at_all(void)
+{
+	struct lw_rope_geometry geometry;
+
+	params.rope_diameter_um = 5000;
+	params.drum_core_diameter_um = 300000;
+	params.rope_packing_permille = 1;
+	TEST_ASSERT_EQUAL_INT(0, lw_params_derive(&lw_params_default, &derived, &why));
+	geometry = lw_params_rope(&params, &derived);
+	TEST_ASSERT_TRUE(geometry.core_um_q16 > 0 && geometry.growth_um_q16 > 0);
+	params.drum_core_diameter_um = 0;
+	geometry = lw_params_rope(&params, &derived);
+	TEST_ASSERT_TRUE(geometry.core_um_q16 == 0 && geometry.growth_um_q16 == 0);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -865,5 +895,6 @@ int main(void)
 	RUN_TEST(test_a_gear_of_two_to_two_is_none);
 	RUN_TEST(test_the_smallest_pitch_is_told_exactly);
 	RUN_TEST(test_the_crc_names_what_moves_the_carriage);
+	RUN_TEST(test_rope_is_described_by_all_that_it_takes_or_not_at_all);
 	return UNITY_END();
 }

@@ -844,6 +844,22 @@ static void test_a_wire_that_breaks_as_it_is_taken_up_is_the_fault(void)
 	TEST_ASSERT_EQUAL_INT(LW_FAULT_WIRING_PLUS, rig.controller->fault);
 }
 
+static void test_the_slowest_drum_has_a_direction(void)
+{
+	launch(0, 1, 20000);
+	restart();
+	rig_ticks(350);
+	rig.device.active.rest_edges_per_s = 1;
+	for (int32_t edges_per_s = -1; edges_per_s <= 1; edges_per_s += 2) {
+		rig.controller->speed.edges_per_s = edges_per_s;
+		lw_controller_reacquire(rig.controller);
+		TEST_ASSERT_EQUAL_INT(edges_per_s > 0 ? LW_PLUS : LW_MINUS,
+				      rig.controller->reacquire.side);
+		lw_controller_stop(rig.controller);
+		rig.controller->reacquire.stands_since_us = 0;
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -872,5 +888,6 @@ int main(void)
 	RUN_TEST(test_as_far_as_the_travel_and_no_farther);
 	RUN_TEST(test_a_switch_may_be_left_as_late_as_it_can_be_reached);
 	RUN_TEST(test_a_wire_that_breaks_as_it_is_taken_up_is_the_fault);
+	RUN_TEST(test_the_slowest_drum_has_a_direction);
 	return UNITY_END();
 }

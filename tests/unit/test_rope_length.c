@@ -460,6 +460,16 @@ static void test_growth_is_rounded_to_its_last_bit(void)
 	}
 }
 
+static void test_the_limit_is_all_rope_that_a_turn_more_would_pass(void)
+{
+	geometry.growth_um_q16 = 0;
+	geometry.core_um_q16 = LW_ROPE_LENGTH_MAX_UM / 2 * LW_ROPE_TURN;
+	TEST_ASSERT_EQUAL_INT64(LW_ROPE_LENGTH_MAX_UM, lw_rope_length_um(&geometry, LW_ROPE_TURN));
+	geometry.core_um_q16 -= LW_ROPE_TURN;
+	TEST_ASSERT_EQUAL_INT64(LW_ROPE_LENGTH_MAX_UM / 2 - 1,
+				lw_rope_length_um(&geometry, LW_ROPE_TURN));
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -481,5 +491,6 @@ int main(void)
 	RUN_TEST(test_a_geared_encoder_tells_parts_of_turns);
 	RUN_TEST(test_a_turn_off_the_bare_drum_is_not_doubtful_more_is);
 	RUN_TEST(test_growth_is_rounded_to_its_last_bit);
+	RUN_TEST(test_the_limit_is_all_rope_that_a_turn_more_would_pass);
 	return UNITY_END();
 }

@@ -104,6 +104,47 @@ static void test_sound_switches_at_any_speed(void)
 	}
 }
 
+/** Believed at a place, a switch as it is; ticks until it is implausible, or -1. */
+static int ticks_until_implausible(int side, int32_t inward_usteps)
+{
+	const int32_t usteps = rig.controller->derived->switch_usteps[side] -
+			       lw_side_direction(side) * inward_usteps;
+
+	lw_motion_set_position(&rig.controller->motion, rig.controller->motion.window,
+			       usteps * LW_USTEP, 0);
+	rig.controller->switch_check.plausible_us[side] = rig.now_us;
+	for (int ticks = 1; ticks <= 100; ticks++) {
+		rig_tick();
+		if (rig.controller->switch_check.implausible[side]) {
+			return ticks;
+		}
+	}
+	return -1;
+}
+
+static void test_the_borders_of_what_is_plausible(void)
+{
+	track();
+	TEST_ASSERT_EQUAL_INT(0, write_register(LW_ADDRESS_MODE, LW_MODE_CENTRE));
+	rig_run_to(LW_STATE_CENTRED);
+
+	const struct lw_limit_switch_config *limits = &rig.controller->limit_config;
+	const int contact_ticks =
+		(int)((limits->transit_us + limits->debounce_us + 5000) / LW_CONTROLLER_TICK_US);
+
+	FOR_EACH_SIDE(side) {
+		/* Tolerance and hysteresis inside, the tolerance outside. */
+		rig_set_switch(side, RIG_SWITCH_ALWAYS);
+		TEST_ASSERT_EQUAL_INT(-1, ticks_until_implausible(side, 100 + 150));
+		TEST_ASSERT_EQUAL_INT(contact_ticks + 1, ticks_until_implausible(side, 100 + 151));
+		rig_set_switch(side, RIG_SWITCH_NEVER);
+		TEST_ASSERT_EQUAL_INT(-1, ticks_until_implausible(side, 90));
+		TEST_ASSERT_EQUAL_INT(-1, ticks_until_implausible(side, -100));
+		TEST_ASSERT_EQUAL_INT(contact_ticks + 1, ticks_until_implausible(side, -101));
+		rig_set_switch(side, RIG_SWITCH_WORKS);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -113,5 +154,6 @@ int main(void)
 	RUN_TEST(test_centred_is_judged_too);
 	RUN_TEST(test_an_unknown_position_says_nothing_about_switches);
 	RUN_TEST(test_sound_switches_at_any_speed);
+	RUN_TEST(test_the_borders_of_what_is_plausible);
 	return UNITY_END();
 }
