@@ -27,10 +27,6 @@
 
 LOG_MODULE_REGISTER(encoder_stm32);
 
-/** More transitions than this between an index pulse and its interrupt, and its place is unknown.
- */
-#define INDEX_TRANSITIONS_MAX 1
-
 /** So often are levels and count read until no transition falls in between. */
 #define READS_MAX 100
 
@@ -114,10 +110,8 @@ static void on_index(const struct device *port, struct gpio_callback *gpio, gpio
 {
 	struct encoder_data *data = CONTAINER_OF(gpio, struct encoder_data, index.gpio);
 	const struct encoder_config *config = data->dev->config;
-	const int32_t unseen = (int32_t)(config->timer->CNT - data->seen);
-	/* A pulse that is over began at least as long ago as it is wide. */
-	const bool late = unseen > INDEX_TRANSITIONS_MAX || unseen < -INDEX_TRANSITIONS_MAX ||
-			  gpio_pin_get_dt(&config->index) <= 0;
+	/* A pulse that is over began an unknown time ago. While it stands, the count is in it. */
+	const bool late = gpio_pin_get_dt(&config->index) <= 0;
 
 	ARG_UNUSED(port);
 	ARG_UNUSED(pins);

@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 import pytest
-from levelwind.map_table import Fault, Mode, State
+from levelwind.map_table import BenchCommand, Fault, Mode, State
 
 from board.jitter import measure
 from board.machine import CHANNEL_A, CHANNEL_B, IRQ0, Board, available
@@ -188,6 +188,20 @@ def test_each_change_of_a_channel_that_changes_alone_is_seen(channel: tuple[int,
         board.run(20.8e-6)
     assert board.value("net_edges") - before["net_edges"] in (-1, 0, 1)
     assert board.value("encoder_doubts") == before["encoder_doubts"] + 1
+
+
+@pytest.mark.parametrize("mode", [Mode.TRACK, Mode.OFF], ids=lambda mode: mode.name.lower())
+@pytest.mark.parametrize("speed", [6_000, EDGES_PER_S])
+def test_lost_pulses_are_found_by_the_next_index_pulse(speed: int, mode: Mode):
+    """However many transitions are still to be taken when it comes."""
+    board = indexed()
+    board.mode(mode)
+    board.drum(speed, 480_000)
+    board.run(0.5)
+    for losses in range(1, 9):
+        board.write(bench_argument=3, bench_command=BenchCommand.LOSE_PULSES)
+        board.run(720 / speed + 0.01)
+        assert board.value("missed_edges") == losses * 3 * 2  # two edges per pulse
 
 
 @pytest.mark.parametrize("channel", [CHANNEL_A, CHANNEL_B], ids="AB")
