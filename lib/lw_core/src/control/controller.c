@@ -164,18 +164,21 @@ struct lw_limit_switch_trigger lw_controller_position(const struct lw_controller
 	const struct lw_motion *motion = &controller->motion;
 	const volatile int32_t *corrected_usteps = &motion->corrected_usteps;
 	const volatile int32_t *u = &motion->law.u;
-	const volatile uint32_t *edges = &motion->edges;
-	const int32_t lately_edges = lw_drum_speed_lately_edges(&controller->speed, *edges);
+	const volatile uint32_t *counted_edges = &motion->edges;
 	struct lw_limit_switch_trigger at;
+	uint32_t edges;
+	int32_t lately_edges;
 
-	at.drum_direction = (int8_t)((lately_edges > 0) - (lately_edges < 0));
 	do {
 		/* First: the members of an initializer are read in any order. */
+		edges = *counted_edges;
 		at.corrected_usteps = *corrected_usteps;
 		at.pos_usteps = lw_law_pos_usteps(lw_motion_m(motion));
 		at.u = *u;
 		at.direction = (int8_t)lw_motion_direction(motion);
-	} while (at.corrected_usteps != *corrected_usteps);
+	} while (edges != *counted_edges || at.corrected_usteps != *corrected_usteps);
+	lately_edges = lw_drum_speed_lately_edges(&controller->speed, edges);
+	at.drum_direction = (int8_t)((lately_edges > 0) - (lately_edges < 0));
 	return at;
 }
 
