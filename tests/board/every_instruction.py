@@ -32,6 +32,7 @@ def walk(name: str, interrupt: str, stride: int = STRIDE) -> Walk:
     """Inject an interrupt into an operation, before one instruction in every `stride`."""
     operation = OPERATIONS[name]
     board = operation.prepare()
+    board.run_to_sleep()  # so that something is done wholly before what begins now
     operation.begin(board)
     return Injector(board).walk(interrupts(name)[interrupt], operation.window_s, stride)
 

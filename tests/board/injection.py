@@ -209,14 +209,15 @@ class Injector:
         )
 
     def _outcome(self) -> Outcome:
-        memory = self.board.ram(self.address, self.size)
+        board = self.board
+        memory = board.ram(self.address, self.size)
         compared = int.from_bytes(memory, "little") & self.mask_number
-        return Outcome(
-            compared.to_bytes(self.size, "little"),
-            self._windows(memory),
-            self.board.seen.steps,
-            without_measures(bytes(byte.value for byte in self.board.heard())),
-        )
+        windows, steps = self._windows(memory), board.seen.steps
+        while not board.line_idle:  # a whole answer, however late it began
+            board.run(END_S)
+        answer = bytes(byte.value for byte in board.heard())
+        memory_compared = compared.to_bytes(self.size, "little")
+        return Outcome(memory_compared, windows, steps, without_measures(answer))
 
     def _inject(self, interrupt: Callable[[Board], None] | None, settled_ns: int) -> Outcome:
         board = self.board

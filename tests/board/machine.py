@@ -330,6 +330,11 @@ class Board(World):
         """Run so many instructions, within a time; how many it was."""
         return self._call("run_instructions", count, round(seconds * 1e9))
 
+    def run_to_sleep(self) -> None:
+        """Run until no thread and no interrupt is under way."""
+        while not self.asleep:
+            assert self.run_instructions(1, 1.0), "no power"
+
     def run_to_exception(self, exception: int, seconds: float) -> bool:
         """Run until its handler is about to begin, at most for a time; whether it has come."""
         return self._call("run_to_exception", exception, round(seconds * 1e9))
