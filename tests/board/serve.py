@@ -24,6 +24,7 @@ SLICE_S = 0.001
 LAG_MAX_S = 0.2  # what it may fall behind before it gives up catching up
 READS = {3, 4}
 BENCH_FUNCTIONS = {3, 4, 6, 16}
+BROADCAST = 0
 STATE, FLAGS = POINTS["state"], POINTS["flags"]
 ROW = np.dtype(
     [
@@ -108,9 +109,9 @@ class Server:
             answer = self.board.request(frame[1:-2])
             if self.board.seen.resets_power != starts:
                 self.board.run(START_S)  # the simulator and native_sim are there at once, too
-            if frame[0] != 0:
+            if frame[0] != BROADCAST:  # which the controller hears, too
                 os.write(self._master, sealed(frame[:1] + answer))
-            return
+                return
         self._asked = None
         if whole and frame[1] in READS:
             self._asked = (frame[1], address, int.from_bytes(frame[4:6], "big"))

@@ -75,6 +75,10 @@ static void show(struct board *board, uint32_t changed)
 	if (changed & LW_PLANT_STEPPER_ALARM) {
 		contact(board, PORT_B, 6, pins->stepper_alarm);
 	}
+	if (changed & LW_PLANT_TRIM_BUTTONS) {
+		contact(board, PORT_B, 14, pins->trim_buttons[0]); /* early */
+		contact(board, PORT_B, 15, pins->trim_buttons[1]);
+	}
 	for (int side = 0; side < LW_PLANT_SIDES; side++) {
 		if (changed & (LW_PLANT_LIMIT_PLUS << side)) {
 			contact(board, PORT_B, sides[side].no, pins->limit[side].no_closed);
