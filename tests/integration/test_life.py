@@ -171,4 +171,5 @@ def test_the_firmware_measures_itself_where_it_can(target: str, slave: Slave) ->
         return
     turn_drum(slave, 400_000)
     slave.wait(lambda: all(slave.read(name) for name in names))
-    assert min(slave.read(name) for name in names[:-1]) >= 200
+    # What they may need at most is computed when the firmware is built: cmake/stack_bounds.py.
+    assert min(slave.read(name) for name in names[:-1]) >= 100
