@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`./dev board --injections`: all operations, each interrupted at every instruction, on all cores.
 
+LEVELWIND_INJECTION_STRIDE in the environment takes one instruction in so many.
+
 What an operation is interrupted by, and the walk through it, for test_injection.py, too.
 """
 
@@ -17,6 +19,7 @@ from board.injection import STRIDE, Injector, TornError, Walk, contact, edge, ti
 from board.machine import Board
 from board.operations import OPERATIONS
 
+EVERY = int(os.environ.get("LEVELWIND_INJECTION_STRIDE", "1"))
 LEAVES_OUT = "timer"  # an edge of the edge timer may be left out: the carriage waits a moment
 PLACES_MIN = 5  # fewer are no operation
 
@@ -56,10 +59,10 @@ class Row(NamedTuple):
 
 
 def judge(name: str) -> list[Row]:
-    """All interrupts of an operation, at every instruction."""
+    """All interrupts of an operation, at every instruction, or one in so many."""
     rows = []
     for interrupt in interrupts(name):
-        done = walk(name, interrupt, stride=1)
+        done = walk(name, interrupt, EVERY)
         torn = ""
         try:
             check(done, interrupt)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The command `levelwind`, run as a user runs it, against a running slave."""
 
+import hashlib
 import json
 import os
 import pty
@@ -14,6 +15,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
+from board.machine import IMAGE
 from levelwind.map_table import Command, Flag, State
 from slave import NATIVE_DIR, Simulator, Slave, bring_to_rest
 
@@ -65,12 +67,15 @@ def at(slave: Slave) -> str:
     return slave.port
 
 
-def test_identify_and_status(at: str) -> None:
+def test_identify_and_status(at: str, target: str) -> None:
     identity = json.loads(output(at, "identify", "--json"))
     assert identity["self_test"] == 0x12345678
-    assert identity["image"] is None
+    image = None
+    if target == "board":
+        image = hashlib.sha256(IMAGE.read_bytes()).hexdigest()[:16]
+    assert identity["image"] == image
     assert "levelwind" in output(at, "identify")
-    assert "image not known" in output(at, "identify")
+    assert f"image {image or 'not known'}" in output(at, "identify")
     status = json.loads(output(at, "status", "--json"))
     assert status["state"] == "unindexed"
     assert status["launch_permit"] is False
