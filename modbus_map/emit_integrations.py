@@ -346,6 +346,8 @@ def _telegraf_request(register: str, fields: list[str]) -> list[str]:
 
 # ---- W3C Web of Things: a Thing Description with the Modbus binding ------------------------------
 
+# What a consumer is to make of the bytes: the binding's own word for it, and what a decoder of
+# application/octet-stream goes by. Without `signed` that takes every number for a signed one.
 _WOT_TYPES = {
     "u16": "xsd:unsignedShort",
     "i16": "xsd:short",
@@ -355,14 +357,15 @@ _WOT_TYPES = {
 }
 
 
-def _wot_form(op: str, entity: str, function: str, kind: str, address: int, count: int) -> dict:
+def _wot_form(op: str, entity: str, address: int, words: int = 0, type_: str = "") -> dict:
+    """Of a bit, or of so many words. The entity says the function, of whose names there are two."""
+    size = f"length={2 * words or 1};signed={str(type_.startswith('i')).lower()}"
     return {
         "op": op,
-        "href": f"modbus+tcp://{GATEWAY}/1/{address}?quantity={count}",
-        "contentType": "application/octet-stream",
+        "href": f"modbus+tcp://{GATEWAY}/1/{address}?quantity={words or 1}",
+        "contentType": f"application/octet-stream;{size};byteSeq=BIG_ENDIAN",
         "modv:entity": entity,
-        "modv:function": function,
-        "modv:type": kind,
+        "modv:type": _WOT_TYPES[type_] if type_ else "xsd:boolean",
         "modv:zeroBasedAddressing": True,
         "modv:mostSignificantByte": True,
         "modv:mostSignificantWord": True,
@@ -375,16 +378,7 @@ def wot_td_json(map_: Map) -> str:
             "type": "boolean",
             "description": flag.text,
             "readOnly": True,
-            "forms": [
-                _wot_form(
-                    "readproperty",
-                    "DiscreteInput",
-                    "readDiscreteInputs",
-                    "xsd:boolean",
-                    flag.value,
-                    1,
-                )
-            ],
+            "forms": [_wot_form("readproperty", "DiscreteInput", flag.value)],
         }
         for flag in map_.flags
     }
@@ -396,23 +390,14 @@ def wot_td_json(map_: Map) -> str:
             "readOnly": True,
             **({"unit": point.unit} if point.unit else {}),
             "forms": [
-                _wot_form(
-                    "readproperty",
-                    "InputRegister",
-                    "readInputRegisters",
-                    _WOT_TYPES[point.type],
-                    point.address,
-                    point.words,
-                )
+                _wot_form("readproperty", "InputRegister", point.address, point.words, point.type)
             ],
         }
     actions = {
         coil.name: {
             "description": coil.text,
             "input": {"type": "boolean", "const": True},
-            "forms": [
-                _wot_form("invokeaction", "Coil", "writeSingleCoil", "xsd:boolean", coil.address, 1)
-            ],
+            "forms": [_wot_form("invokeaction", "Coil", coil.address)],
         }
         for coil in map_.coils
     }

@@ -274,11 +274,15 @@ def test_thing_description() -> None:
         assert (unit, told["readOnly"], form["op"]) == ("1", True, "readproperty")
         if name in flags:
             assert (int(address), int(count)) == (flags[name], 1)
-            assert form["modv:function"] == "readDiscreteInputs"
+            assert form["modv:entity"] == "DiscreteInput"
         else:
             point = POINTS[name][1]
             assert (int(address), int(count)) == (point.address, point.words)
-            assert WOT_TYPES[form["modv:type"]] == BITS[point.type]
+            assert form["modv:entity"] == "InputRegister"
+            words, signed = WOT_TYPES[form["modv:type"]]
+            assert (words, signed) == BITS[point.type]
+            size = f"length={2 * words};signed={str(signed).lower()};byteSeq=BIG_ENDIAN"
+            assert form["contentType"] == f"application/octet-stream;{size}"
             assert told.get("unit", "") == point.unit
     coils = {coil.name: coil.address for coil in MAP.coils}
     assert {

@@ -11,12 +11,13 @@ import sys
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from levelwind.line.device import Device
+from levelwind.line.points import REGISTERS_PER_READ, runs
 from levelwind.line.port import Line
-from levelwind.map_table import Command
+from levelwind.map_table import POINTS, Command, Flag
 from levelwind.serve.guard import PinFile
 from levelwind.simulate import simulator
 
@@ -124,6 +125,40 @@ class Served:
             device.command(Command.INDEX, limit_s=60)
         if permitted:
             wait(lambda: self.sees() and self.status()["launch_permit"], what="the server sees it")
+
+    def turn_back(self) -> None:
+        """A little, and come to rest: counts and places that are negative."""
+        with self.device() as device:
+            device.write({"bench_drum_speed_millirpm": -60_000})
+            wait(lambda: device.value("net_edges") < -10_000)
+            device.write({"bench_drum_speed_millirpm": 0})
+            wait(lambda: device.value("drum_at_rest"))
+
+    def compare(self, read: Callable[[], Mapping[str, object]]) -> set[str]:
+        """What somebody else reads is what the controller says; the names of what stood still.
+
+        With some of every type, also what a wrong sign or a wrong order of words would change.
+        """
+
+        def by_line() -> dict[str, int]:
+            points = [p for p in POINTS.values() if p.space == "input" and p.address < 1000]
+            said: dict[str, int] = {}
+            with self.device() as device:
+                for run in runs(points, REGISTERS_PER_READ):
+                    said |= device.read(run.points)
+            flags = said["flags"] | said["flags_2"] << 32
+            return said | {bit.label: flags >> bit & 1 for bit in Flag}
+
+        before, told, after = by_line(), read(), by_line()
+        still = {name for name in told if before[name] == after[name]}
+        wrong = {name: (told[name], before[name]) for name in still if told[name] != before[name]}
+        assert not wrong, wrong
+        types = {(POINTS[n].type, before[n] < 0) for n in still if n in POINTS and before[n]}
+        wanted = {(t, False) for t in ("u16", "u32", "i32")} | {("i32", True)}
+        assert types >= wanted, types
+        assert len(still) > 0.9 * len(told)
+        assert {flag.label for flag in Flag} <= told.keys()
+        return still
 
     def get(self, path: str, headers: dict[str, str] | None = None) -> bytes:
         request = urllib.request.Request(self.url + path, headers=headers or {})

@@ -15,7 +15,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from levelwind.map_table import POINTS, Flag
 from playwright.sync_api import Browser, expect
 from served import Served, free_port, wait
 
@@ -84,10 +83,12 @@ def test_the_panel(
 ) -> None:
     served = start()
     served.index()
+    served.turn_back()
     project = json.loads(PROJECT.read_text())
     device = project["devices"]["levelwind"]
     device["property"]["address"] = f"127.0.0.1:{served.gate}"
     ask(f"{fuxa}/api/project", json.dumps(project).encode())
+    by_name = {tag["name"]: tag for tag in device["tags"].values()}
     ids = urllib.parse.quote(json.dumps(list(device["tags"])))
 
     def values() -> dict[str, float | None]:
@@ -95,16 +96,23 @@ def test_the_panel(
         return {tag["id"].removeprefix("levelwind_"): tag["value"] for tag in read}
 
     wait(lambda: None not in values().values(), 20, "every tag")
+
+    def read() -> dict[str, object]:
+        """What it has read after now, in the map's units: it asks again and again by itself."""
+        for _ in range(2):
+            seen = values()["uptime_ms"]
+            wait(lambda seen=seen: values()["uptime_ms"] != seen, what="a round of all tags")
+        scaled = {name: tag["divisor"] for name, tag in by_name.items() if tag["divisor"] != 1}
+        told = {name: value for name, value in values().items() if name not in scaled}
+        assert scaled.keys() > {"position_um", "rope_on_drum_mm"}
+        return told
+
+    still = served.compare(read)
+    assert still > {"state", "launch_inhibit", "span_error_um", "ka", "net_edges", "slot_7"}
     told = values()
     with served.device() as line:
-        assert told["position_um"] == round(line.value("position_um") / 1000, 1)
-        for name in ("state", "launch_inhibit", "span_error_um", "ka", "slope_error_ppm"):
-            assert told[name] == line.value(name), name
-        flags = line.value("flags") | line.value("flags_2") << 32
-    assert {flag.name.lower(): bool(flags >> flag & 1) for flag in Flag} == {
-        flag.name.lower(): bool(told[flag.name.lower()]) for flag in Flag
-    }
-    assert {name for name in told if name in POINTS} > {"rope_mm", "net_edges", "slot_7"}
+        for name in ("position_um", "rope_on_drum_mm", "rope_out_mm"):
+            assert told[name] == round(line.value(name) / 1000, 1), name
 
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     wrong: list[str] = []
