@@ -2,9 +2,14 @@
 """Files that are written whole, or not at all."""
 
 import contextlib
+import os
 from pathlib import Path
 
 from levelwind.errors import ToolError
+
+
+def _private(path: str, flags: int) -> int:
+    return os.open(path, flags, 0o600)
 
 
 def make_folder(folder: Path) -> None:
@@ -15,13 +20,17 @@ def make_folder(folder: Path) -> None:
         raise ToolError(f"{folder} cannot be made: {error.strerror}.") from error
 
 
-def write(path: Path, content: bytes | str) -> None:
-    """Write a file, text as UTF-8. On a full disk what was there stays; ToolError says why."""
+def write(path: Path, content: bytes | str, private: bool = False) -> None:
+    """Write a file, text as UTF-8. On a full disk what was there stays; ToolError says why.
+
+    A private one is for its user only, from its first byte on.
+    """
     data = content.encode() if isinstance(content, str) else content
     in_place = path.is_symlink() or (path.exists() and not path.is_file())
     new = path if in_place else path.with_name(f"{path.name}.new")
     try:
-        new.write_bytes(data)
+        with new.open("wb") if not private else open(new, "wb", opener=_private) as file:
+            file.write(data)
         new.replace(path)
     except OSError as error:
         if not in_place:

@@ -92,6 +92,13 @@ def serve(
             "--commission: the demonstration drives this winch. Give the --port of a `levelwind "
             "sim` in another terminal."
         )
+    if write_from and modbus_tcp is None:
+        raise ToolError(
+            "--write-from: it is for clients of --modbus-tcp HOST:PORT; give that, too."
+        )
+    for one in name or []:
+        if not guard.is_name(one):
+            raise ToolError(f"--name {one}: give the name alone, for example winch.local.")
     if machine_file and not simulate:
         raise ToolError("--machine: a real winch is as it is; give --simulator, too.")
     winch = machine.read(machine_file) if machine_file else None

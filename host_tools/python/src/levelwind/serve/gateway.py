@@ -3,6 +3,7 @@
 
 import asyncio
 import ipaddress
+import time
 from contextlib import suppress
 
 from levelwind.errors import ToolError
@@ -17,6 +18,8 @@ IDLE_S = 600.0
 FRAME_S = 10.0
 """A frame that has begun must end within this."""
 WRITE_S = 10.0
+MAPPED_BITS = 96
+"""Before an IPv4 address that is written as one of IPv6: clients are known by the former."""
 READING = frozenset({1, 2, 3, 4, 7, 11, 12, 17, 20, 24})
 READING_DIAGNOSTICS = frozenset({0, 2, *range(11, 19)})
 ILLEGAL_FUNCTION = 0x01
@@ -34,10 +37,20 @@ def only_reads(pdu: bytes) -> bool:
 
 def networks(given: list[str]) -> list[Network]:
     """ADDRESS or ADDRESS/MASK; ToolError if one is neither."""
+    return [_network(text) for text in given]
+
+
+def _network(text: str) -> Network:
     try:
-        return [ipaddress.ip_network(text) for text in given]
+        network = ipaddress.ip_network(text)
     except ValueError as error:
-        raise ToolError(f"--write-from: {error}.") from None
+        raise ToolError(
+            f"--write-from: {error}. Give one as 192.168.1.7, a network as 192.168.1.0/24."
+        ) from None
+    mapped = getattr(network.network_address, "ipv4_mapped", None)
+    if mapped is not None and network.prefixlen >= MAPPED_BITS:
+        return ipaddress.ip_network((mapped, network.prefixlen - MAPPED_BITS))
+    return network
 
 
 def is_whole(pdu: bytes) -> bool:
@@ -60,10 +73,15 @@ class Gateway:
     """The server for Modbus TCP. A client has one request under way; the next waits in its pipe."""
 
     def __init__(self, owner: PortOwner, write_from: list[Network]) -> None:
-        self.clients = 0
         self._owner, self._write_from = owner, write_from
         self._server: asyncio.Server | None = None
-        self._serving: set[asyncio.Task[None]] = set()
+        self._serving: dict[asyncio.Task[None], float] = {}
+        """And when each was last asked something."""
+
+    @property
+    def clients(self) -> int:
+        """How many are connected."""
+        return len(self._serving)
 
     async def start(self, host: str, port: int) -> int:
         """Listen; the TCP port. ToolError says why not."""
@@ -82,21 +100,23 @@ class Gateway:
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         task = asyncio.current_task()
-        if self.clients >= CLIENTS_MAX or task is None:
-            writer.close()
-            return
-        self._serving.add(task)
-        self.clients += 1
+        assert task is not None
+        if len(self._serving) >= CLIENTS_MAX:
+            # As the implementation guide of Modbus TCP has it: one that has gone without a word,
+            # or a program that forgets to close, must not keep a PLC out.
+            oldest = min(self._serving, key=lambda one: self._serving[one])
+            del self._serving[oldest]
+            oldest.cancel()
+        self._serving[task] = time.monotonic()
         client = object()
         may_write = self._may_write(writer.get_extra_info("peername"))
         try:
             while await self._exchange(client, may_write, reader, writer):
-                pass
+                self._serving[task] = time.monotonic()
         except (OSError, EOFError, TimeoutError, asyncio.TimeoutError, asyncio.CancelledError):
             pass
         finally:
-            self.clients -= 1
-            self._serving.discard(task)
+            self._serving.pop(task, None)
             self._owner.forget(client)
             with suppress(OSError):
                 writer.close()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who may speak to the server: Host, Origin, size of a body; and the PIN that commands need."""
+"""Who may speak to the server: Host, Origin, size of a body, patience; and the PIN of commands."""
 
+import asyncio
 import hashlib
 import hmac
 import ipaddress
@@ -13,13 +14,20 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import ClientDisconnect
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from levelwind import whole_file
 from levelwind.errors import ToolError
 
 BODY_MAX = 16 * 1024
+CONNECTIONS_MAX = 128
+REQUEST_S = 10.0
+"""A request must be there within this, and what is sent must be taken up within this."""
+LOOK_S = 1.0
+TOO_MUCH = f"At most {BODY_MAX} bytes."
 HEADERS = {
     "Content-Security-Policy": "default-src 'self'; frame-ancestors 'none'; base-uri 'none'; "
     "form-action 'none'",
@@ -43,6 +51,69 @@ def is_loopback(host: str) -> bool:
         return host == "localhost"
 
 
+def _plain(name: str) -> str:
+    """A host's name as it is compared: capitals and the dot at the end say nothing."""
+    return name.lower().removesuffix(".")
+
+
+def is_name(name: str) -> bool:
+    """Is it a host's name, without port, path or anything else?"""
+    try:
+        return urlsplit(f"//{name}").hostname == name.lower()
+    except ValueError:
+        return False
+
+
+class _TooMuchError(Exception):
+    """A body above BODY_MAX."""
+
+
+class PatientHttp(H11Protocol):
+    """A connection that has to say something soon, and to take up what it is sent.
+
+    Uvicorn waits for ever for a request that never comes whole, and refuses requests but no
+    connections: a few programs that say nothing would keep everybody else out.
+    """
+
+    _since_s = 0.0
+    """Since when it waits for a request, or for something that was sent to be taken up."""
+    _unsent = 0
+    _looking: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """One more. Where there are too many, the one that has waited longest goes."""
+        super().connection_made(transport)
+        self._since_s = self.loop.time()
+        self._look()
+        staying = [c for c in self.connections if not c.transport.is_closing()]
+        if len(staying) > CONNECTIONS_MAX:
+            idle = [c for c in staying if isinstance(c, PatientHttp) and c._waits()]
+            min(idle, key=lambda one: one._since_s).transport.abort()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """It is over: look no more."""
+        if self._looking is not None:
+            self._looking.cancel()
+        super().connection_lost(exc)
+
+    def _waits(self) -> bool:
+        """Is it the other side's turn?"""
+        cycle = self.cycle
+        return cycle is None or cycle.more_body or cycle.response_complete or self.flow.write_paused
+
+    def _look(self) -> None:
+        if self.transport.get_protocol() not in (self, None):
+            return  # a WebSocket by now, with pings of its own
+        unsent, now_s = self.transport.get_write_buffer_size(), self.loop.time()
+        if not self._waits() or unsent < self._unsent:
+            self._since_s = now_s
+        self._unsent = unsent
+        if now_s - self._since_s > REQUEST_S:
+            self.transport.abort()
+        else:
+            self._looking = self.loop.call_later(LOOK_S, self._look)
+
+
 class Guard:
     """Refuses what no page of ours has sent.
 
@@ -53,7 +124,8 @@ class Guard:
 
     def __init__(self, app: ASGIApp, loopback: bool, names: frozenset[str]) -> None:
         self.app, self.loopback = app, loopback
-        self.names = names | {"localhost"} | (frozenset() if loopback else {socket.gethostname()})
+        known = {"localhost", *names, *(() if loopback else (socket.gethostname(),))}
+        self.names = {_plain(name) for name in known}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """As ASGI wants it."""
@@ -75,7 +147,7 @@ class Guard:
             message = await receive()
             received += len(message.get("body", b"")) if message["type"] == "http.request" else 0
             if received > BODY_MAX:
-                return {"type": "http.disconnect"}
+                raise _TooMuchError
             return message
 
         async def sealed(message: Message) -> None:
@@ -85,7 +157,12 @@ class Guard:
                     headers.setdefault(name, value)  # a report brings a policy of its own
             await send(message)
 
-        await self.app(scope, limited, sealed)
+        try:
+            await self.app(scope, limited, sealed)
+        except _TooMuchError:
+            await PlainTextResponse(TOO_MUCH, 413, {"Connection": "close"})(scope, receive, sealed)
+        except ClientDisconnect:
+            pass  # it has hung up in its own request
 
     def _refusal(self, headers: Headers) -> tuple[int, str]:
         host = headers.get("host", "")
@@ -96,15 +173,15 @@ class Guard:
         if not self._is_ours(name):
             return 421, f"Host {host!r} is not served here. `--name` lets a name in."
         origin = headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc != host:
+        if origin is not None and origin not in (f"http://{host}", f"https://{host}"):
             return 403, "This request comes from another site."
         length = headers.get("content-length", "0")
         if not length.isdigit() or int(length) > BODY_MAX:
-            return 413, f"At most {BODY_MAX} bytes."
+            return 413, TOO_MUCH
         return 200, ""
 
     def _is_ours(self, name: str) -> bool:
-        if name in self.names:
+        if _plain(name) in self.names:
             return True
         try:
             address = ipaddress.ip_address(name)
@@ -133,8 +210,8 @@ class PinFile:
             self.path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise ToolError(f"{self.path.parent}: {error.strerror}.") from error
-        whole_file.write(self.path, json.dumps({"salt": salt.hex(), "scrypt": digest.hex()}) + "\n")
-        self.path.chmod(0o600)
+        kept = json.dumps({"salt": salt.hex(), "scrypt": digest.hex()})
+        whole_file.write(self.path, kept + "\n", private=True)
 
     def fits(self, pin: str) -> bool:
         """Is this it? Takes its time, on purpose: not for the event loop."""

@@ -17,14 +17,12 @@ from levelwind.line.port import Line
 from levelwind.serve.commissioning import Commissioning
 from levelwind.serve.demonstration import Demonstration
 from levelwind.serve.gateway import Gateway, Network
-from levelwind.serve.guard import PinFile, Sessions, is_loopback
+from levelwind.serve.guard import CONNECTIONS_MAX, PatientHttp, PinFile, Sessions, is_loopback
 from levelwind.serve.operate import Operator
 from levelwind.serve.owner import PortOwner
 from levelwind.serve.recorder import Recorder
 from levelwind.serve.watcher import Watcher
 from levelwind.serve.web import Served, application
-
-CONNECTIONS_MAX = 128
 
 
 @dataclass(frozen=True)
@@ -148,7 +146,7 @@ def run(setting: Setting, ready: Callable[[str], None], warn: Callable[[str], No
                 access_log=False,
                 server_header=False,
                 lifespan="on",
-                limit_concurrency=CONNECTIONS_MAX,
+                http=PatientHttp,
                 timeout_graceful_shutdown=1,
                 ws="websockets-sansio",
                 ws_max_size=4096,

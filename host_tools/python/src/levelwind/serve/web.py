@@ -41,7 +41,6 @@ TREND_EVERY_S = 0.2
 TREND_S = 300
 OLD_S = 1.0
 SOCKETS_MAX = 32
-COOKIE = "levelwind"
 BESIDE_COMMISSIONING = ("stop", "trim_early", "trim_late")
 """What else the operator's page may do while a commissioning is under way: its last step trims."""
 REPORT_POLICY = (
@@ -93,6 +92,9 @@ class Page:
         self.operator = Operator(served.owner)
         self.jog = Jog(self.operator) if served.sessions is not None else None
         self._sockets: set[WebSocket] = set()
+        # One at a time: many at once would take the processor, or the line, from the live values.
+        self._records = asyncio.Semaphore()
+        self._parameters = asyncio.Semaphore()
 
     # ---- looking -------------------------------------------------------------------------------
 
@@ -135,7 +137,7 @@ class Page:
     def _hear(self, socket: WebSocket, text: str) -> str:
         try:
             direction = int(json.loads(text)["jog"])
-        except (ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
             return ""
         if self.jog is None or not self._may_command(socket) or self._is_commissioned():
             return ""
@@ -195,7 +197,8 @@ class Page:
 
     async def parameters(self, _: Request) -> Response:
         """The three copies."""
-        return await self._told(self.operator.parameters)
+        async with self._parameters:
+            return await self._told(self.operator.parameters)
 
     # ---- launches ------------------------------------------------------------------------------
 
@@ -206,52 +209,56 @@ class Page:
 
     async def launches(self, _: Request) -> Response:
         """The newest."""
-        return await self._told(lambda: self._launches().list(50))
+        async with self._records:
+            return await self._told(lambda: self._launches().list(50))
 
     async def launch_picture(self, request: Request) -> Response:
         """One as a picture."""
         number = request.path_params["number"]
-        try:
-            picture = await run_in_threadpool(lambda: self._launches().picture(number))
-        except ToolError as error:
-            return PlainTextResponse(str(error), 404)
-        return Response(picture, media_type="image/png")
+        return await self._of_launch(lambda: self._launches().picture(number), "image/png")
 
     async def launch_csv(self, request: Request) -> Response:
         """One as a table."""
         number = request.path_params["number"]
+        return await self._of_launch(lambda: self._launches().csv(number), "text/csv")
+
+    async def _of_launch(self, do: Callable[[], bytes | str], kind: str) -> Response:
         try:
-            table = await run_in_threadpool(lambda: self._launches().csv(number))
+            async with self._records:
+                return Response(await run_in_threadpool(do), media_type=kind)
         except ToolError as error:
             return PlainTextResponse(str(error), 404)
-        return Response(table, media_type="text/csv")
 
     # ---- commands ------------------------------------------------------------------------------
 
     def _may_command(self, connection: Request | WebSocket) -> bool:
         sessions = self.served.sessions
-        return sessions is not None and sessions.is_open(connection.cookies.get(COOKIE))
+        return sessions is not None and sessions.is_open(
+            connection.cookies.get(_cookie(connection))
+        )
 
     async def pin(self, request: Request) -> Response:
         """The PIN: opens commands in this browser for a while."""
         sessions = self.served.sessions
         if sessions is None:
             return _refused("This page can only look: the server was started without commands.")
+        given = (await _json(request)).get("pin")
+        if not isinstance(given, str):
+            return _refused("Give the PIN.")
         wait_s = sessions.wait_s()
         if wait_s > 0:
             return _refused(f"Too many wrong PINs: wait {wait_s:.0f} s.", 429)
         sessions.count_try()
-        given = (await _json(request)).get("pin")
-        if not isinstance(given, str) or not await run_in_threadpool(sessions.pin.fits, given):
+        if not await run_in_threadpool(sessions.pin.fits, given):
             return _refused("Wrong PIN.")
         answer = JSONResponse({"text": "Commands are open."})
-        answer.set_cookie(COOKIE, sessions.open(), httponly=True, samesite="strict")
+        answer.set_cookie(_cookie(request), sessions.open(), httponly=True, samesite="strict")
         return answer
 
     async def leave(self, request: Request) -> Response:
         """No more commands from this browser."""
         if self.served.sessions is not None:
-            self.served.sessions.close(request.cookies.get(COOKIE))
+            self.served.sessions.close(request.cookies.get(_cookie(request)))
         return JSONResponse({"text": "Commands are closed."})
 
     async def act(self, request: Request) -> Response:
@@ -301,7 +308,7 @@ class Page:
         """What the page asks for; why it was refused, or nothing."""
         try:
             said = json.loads(text)
-        except ValueError:
+        except (ValueError, RecursionError):
             return "Not understood."
         if not isinstance(said, dict):
             return "Not understood."
@@ -356,6 +363,11 @@ class Page:
         return JSONResponse({"text": result} if isinstance(result, str) else result)
 
 
+def _cookie(connection: Request | WebSocket) -> str:
+    """Its name. A browser keeps one of a name for all ports of a host: two drums have two pages."""
+    return f"levelwind_{connection.scope['server'][1]}"
+
+
 def _refused(text: str, status: int = 403) -> Response:
     return JSONResponse({"text": text}, status)
 
@@ -363,7 +375,8 @@ def _refused(text: str, status: int = 403) -> Response:
 async def _json(request: Request) -> dict[str, object]:
     try:
         given = json.loads(await request.body())
-    except ValueError:
+        json.dumps(given, ensure_ascii=False).encode()  # half a surrogate pair is no text
+    except (ValueError, RecursionError):
         return {}
     return given if isinstance(given, dict) else {}
 
