@@ -2,6 +2,7 @@
 """Ctrl-C, and the signals that mean the same: a KeyboardInterrupt that nothing loses."""
 
 import contextlib
+import opcode
 import signal
 import sys
 import threading
@@ -11,6 +12,8 @@ from types import FrameType
 from typing import Any
 
 AGAIN_S = 0.01
+# Python 3.13 leaves a while loop's jump back out of the `try` around the loop (its issue 130279).
+_OUTSIDE = opcode.opmap["JUMP_BACKWARD"] if sys.version_info[:2] == (3, 13) else None
 
 _only_first = False
 _counted = False
@@ -41,25 +44,30 @@ def is_behind(error: BaseException | None) -> bool:
     return error is not None
 
 
-def _end(number: int, _: FrameType | None) -> None:
+def _end(number: int, frame: FrameType | None) -> None:
     """So whatever a command has set in motion is stopped."""
     global _counted  # noqa: PLW0603
     if _only_first and _counted:
+        return
+    if frame is not None and frame.f_code.co_code[frame.f_lasti] == _OUTSIDE:
+        _once_more()
         return
     _counted = True
     raise KeyboardInterrupt(signal.Signals(number).name)
 
 
 def _again(dropped: Any) -> None:
-    """The interpreter drops what is raised in a destructor or a callback: give it once more.
-
-    By another thread and later: here it would be dropped again.
-    """
+    """The interpreter drops what is raised in a destructor or a callback: give it once more."""
     global _counted  # noqa: PLW0603
     if not issubclass(dropped.exc_type, KeyboardInterrupt):
         sys.__unraisablehook__(dropped)
         return
     _counted = False
+    _once_more()
+
+
+def _once_more() -> None:
+    """By another thread and later: here it would be lost again."""
     with contextlib.suppress(RuntimeError):  # the interpreter is at its end
         start_new_thread(_interrupt, ())
 
