@@ -132,23 +132,34 @@ int lw_pdu_write_single_register(struct lw_pdu_exchange *exchange)
 	return error != 0 ? error : lw_pdu_echo(exchange, 5);
 }
 
-int lw_pdu_write_multiple_coils(struct lw_pdu_exchange *exchange)
+/**
+ * Check a write of many: its head, which ends in a count and a byte count, and the values behind
+ * it.
+ *
+ * @param bits of each value
+ */
+static int check_values(struct lw_pdu_exchange *exchange, size_t head, uint16_t most,
+			unsigned int bits)
 {
-	const uint8_t *request = exchange->request;
 	uint16_t count;
-	int error = lw_pdu_check_head(exchange, 6);
+	int error = lw_pdu_check_head(exchange, head);
 
 	if (error != 0) {
 		return error;
 	}
-	count = lw_get16(&request[3]);
-	error = lw_pdu_check_count(exchange, count, WRITE_BITS_MAX);
-	if (error == 0) {
-		error = lw_pdu_check_bytes(exchange, 6, (count + 7u) / 8u);
-	}
+	count = lw_get16(&exchange->request[head - 3]);
+	error = lw_pdu_check_count(exchange, count, most);
+	return error != 0 ? error : lw_pdu_check_bytes(exchange, head, (count * bits + 7u) / 8u);
+}
+
+int lw_pdu_write_multiple_coils(struct lw_pdu_exchange *exchange)
+{
+	const uint8_t *request = exchange->request;
+	int error = check_values(exchange, 6, WRITE_BITS_MAX, 1);
+
 	if (error == 0) {
 		error = lw_bank_write_bits(exchange->pdu->config->bank, lw_get16(&request[1]),
-					   count, &request[6], &exchange->why);
+					   lw_get16(&request[3]), &request[6], &exchange->why);
 	}
 	return error != 0 ? error : lw_pdu_echo(exchange, 5);
 }
@@ -156,19 +167,11 @@ int lw_pdu_write_multiple_coils(struct lw_pdu_exchange *exchange)
 int lw_pdu_write_multiple_registers(struct lw_pdu_exchange *exchange)
 {
 	const uint8_t *request = exchange->request;
-	uint16_t count;
-	int error = lw_pdu_check_head(exchange, 6);
+	int error = check_values(exchange, 6, WRITE_REGISTERS_MAX, 16);
 
-	if (error != 0) {
-		return error;
-	}
-	count = lw_get16(&request[3]);
-	error = lw_pdu_check_count(exchange, count, WRITE_REGISTERS_MAX);
 	if (error == 0) {
-		error = lw_pdu_check_bytes(exchange, 6, 2u * count);
-	}
-	if (error == 0) {
-		error = write_registers(exchange, lw_get16(&request[1]), count, &request[6]);
+		error = write_registers(exchange, lw_get16(&request[1]), lw_get16(&request[3]),
+					&request[6]);
 	}
 	return error != 0 ? error : lw_pdu_echo(exchange, 5);
 }
@@ -203,28 +206,20 @@ int lw_pdu_read_write_multiple_registers(struct lw_pdu_exchange *exchange)
 	const uint8_t *request = exchange->request;
 	uint16_t read_address;
 	uint16_t read_count;
-	uint16_t write_count;
-	int result = lw_pdu_check_head(exchange, 10);
+	int result = check_values(exchange, 10, READ_WRITE_REGISTERS_MAX, 16);
 
 	if (result != 0) {
 		return result;
 	}
 	read_address = lw_get16(&request[1]);
 	read_count = lw_get16(&request[3]);
-	write_count = lw_get16(&request[7]);
-	result = lw_pdu_check_count(exchange, write_count, READ_WRITE_REGISTERS_MAX);
-	if (result == 0) {
-		result = lw_pdu_check_bytes(exchange, 10, 2u * write_count);
-	}
-	if (result != 0) {
-		return result;
-	}
 	/* The write comes first, but not if the read would then be refused: so read twice. */
 	result = read_registers(exchange, LW_SPACE_HOLDING, read_address, read_count);
 	if (result < 0) {
 		return result;
 	}
-	result = write_registers(exchange, lw_get16(&request[5]), write_count, &request[10]);
+	result = write_registers(exchange, lw_get16(&request[5]), lw_get16(&request[7]),
+				 &request[10]);
 	if (result != 0) {
 		return result;
 	}
