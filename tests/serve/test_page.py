@@ -12,7 +12,7 @@ from levelwind.line.device import Device
 from levelwind.line.live import flag, read_live
 from levelwind.line.parameter_sets import replace_set
 from levelwind.map_table import BenchCommand, Fault, Flag, Mode, State
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Locator, Page, expect
 from served import PIN, Served, wait
 
 Start = Callable[..., Served]
@@ -177,15 +177,20 @@ def test_without_commands_the_page_can_only_look(start: Start, open_page: Open) 
     expect(page.locator("#commands")).to_be_hidden()
 
 
-def test_parameters(start: Start, open_page: Open, shot: Shot) -> None:
-    served = start("--allow-commands")
-    page = open_page(served)
+def parameter(page: Page, name: str) -> Locator:
+    """The field of a parameter, with the keys unlocked."""
     page.fill("#pin", PIN)
     page.press("#pin", "Enter")
     expect(page.locator("#keys")).to_be_visible()
     page.click("#parameters summary")
-    page.fill("#filter", "pitch_um")
-    field = page.locator("input[data-name=pitch_um]")
+    page.fill("#filter", name)
+    return page.locator(f"input[data-name={name}]")
+
+
+def test_parameters(start: Start, open_page: Open, shot: Shot) -> None:
+    served = start("--allow-commands")
+    page = open_page(served)
+    field = parameter(page, "pitch_um")
     field.fill("9")
     page.click("#stage")
     expect(page.locator("#parameter-answer")).to_contain_text("pitch_um=9 is outside its limits")
@@ -211,12 +216,7 @@ def test_parameters(start: Start, open_page: Open, shot: Shot) -> None:
 def test_typing_goes_on_when_the_table_is_drawn_again(start: Start, open_page: Open) -> None:
     served = start("--allow-commands")
     page = open_page(served)
-    page.fill("#pin", PIN)
-    page.press("#pin", "Enter")
-    expect(page.locator("#keys")).to_be_visible()
-    page.click("#parameters summary")
-    page.fill("#filter", "pitch_um")
-    field = page.locator("input[data-name=pitch_um]")
+    field = parameter(page, "pitch_um")
     field.fill("11")
     page.evaluate("readParameters()")
     page.keyboard.type("000")
