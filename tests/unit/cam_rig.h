@@ -21,6 +21,22 @@ static inline struct lw_cam_table cam_table(const struct lw_cam_row *rows, size_
 	return table;
 }
 
+/** A table that is followed, first above and then below its begin. */
+static inline struct lw_cam_table cam_hill(void)
+{
+	return (struct lw_cam_table){
+		.version = 7,
+		.row_count = 4,
+		.rows = {{0, 0}, {1000, 1500}, {3000, -500}, {4000, 0}},
+	};
+}
+
+/** Another, of half its length, below its begin. */
+static inline struct lw_cam_table cam_pit(void)
+{
+	return (struct lw_cam_table){.row_count = 3, .rows = {{0, 0}, {500, -900}, {2000, 0}}};
+}
+
 /** What a table is as the words of a bank, its CRC with them. */
 static inline struct lw_cam_bank cam_bank(struct lw_cam_table table)
 {

@@ -2,8 +2,6 @@
 /* A device's banks of cam tables: upload, check, putting in force, storage. */
 #include "cam_rig.h"
 
-static const struct lw_cam_row hill_rows[] = {{0, 0}, {1000, 1500}, {3000, -500}, {4000, 0}};
-static const struct lw_cam_row pit_rows[] = {{0, 0}, {500, -900}, {2000, 0}};
 static struct lw_cam_table hill;
 static struct lw_cam_table pit;
 
@@ -11,9 +9,8 @@ void setUp(void)
 {
 	rig_prepare(0);
 	power_up(NULL, 0);
-	hill = CAM_TABLE(hill_rows);
-	hill.version = 7;
-	pit = CAM_TABLE(pit_rows);
+	hill = cam_hill();
+	pit = cam_pit();
 }
 
 void tearDown(void)
