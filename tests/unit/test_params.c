@@ -161,6 +161,8 @@ static void test_reason_slope_above_one_step(void)
 	assert_refused(LW_REASON_SLOPE_ABOVE_ONE_STEP, LW_ADDRESS_PITCH_UM, 30000, 28799);
 	params.overshoot_um = 100;
 	assert_limit_is_the_border((int32_t *)&params.pitch_um, 0, 2);
+	params.pitch_um = 28805;
+	assert_refused(LW_REASON_SLOPE_ABOVE_ONE_STEP, LW_ADDRESS_PITCH_UM, 28805, 28799);
 
 	/* Steeper than any number that the derivation works with. */
 	params.pitch_um = 100000;
@@ -206,9 +208,21 @@ static void test_reason_slope_unreachable(void)
 	params.slope_tolerance_ppm = 30000;
 	assert_refused(LW_REASON_SLOPE_UNREACHABLE, LW_ADDRESS_SLOPE_TOLERANCE_PPM, 30000,
 		       1000000 / 22 + 1 + 1);
-	params.slope_tolerance_ppm = 50000;
+	/* 10.5 to 11 is half a unit of 10.5. */
+	params.slope_tolerance_ppm = 47619;
+	TEST_ASSERT_EQUAL_INT(-EINVAL, lw_params_derive(&params, &derived, &why));
+	TEST_ASSERT_EQUAL_UINT16(LW_REASON_SLOPE_UNREACHABLE, why.reason);
+	params.slope_tolerance_ppm = 47620;
 	TEST_ASSERT_TRUE(lw_params_derive(&params, &derived, &why) == 0 ||
 			 why.reason != LW_REASON_SLOPE_UNREACHABLE);
+
+	/* What would do is told rounded to nearest, and one more. */
+	params.slope_tolerance_ppm = 100;
+	params.pitch_um = 83837; /* 64.49 */
+	assert_refused(LW_REASON_SLOPE_UNREACHABLE, LW_ADDRESS_SLOPE_TOLERANCE_PPM, 100, 7813 + 1);
+	params.pitch_um = 1820; /* 1.4 */
+	assert_refused(LW_REASON_SLOPE_UNREACHABLE, LW_ADDRESS_SLOPE_TOLERANCE_PPM, 100,
+		       500000 + 1);
 }
 
 static void test_reason_reversals_crossed(void)
@@ -854,6 +868,16 @@ static void test_rope_is_described_by_all_that_it_takes_or_not_at_all(void)
 	TEST_ASSERT_TRUE(geometry.core_um_q16 == 0 && geometry.growth_um_q16 == 0);
 }
 
+static void test_the_steepest_slope_is_less_than_a_step(void)
+{
+	/* 65535.09 of 65536: in two edges it would be a whole step. */
+	params.encoder_pulses_per_rev *= 10;
+	params.pitch_um = 287996;
+	params.overshoot_um = 5;
+	assert_accepted();
+	TEST_ASSERT_EQUAL_INT32(65535, derived.ks);
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -896,5 +920,6 @@ int main(void)
 	RUN_TEST(test_the_smallest_pitch_is_told_exactly);
 	RUN_TEST(test_the_crc_names_what_moves_the_carriage);
 	RUN_TEST(test_rope_is_described_by_all_that_it_takes_or_not_at_all);
+	RUN_TEST(test_the_steepest_slope_is_less_than_a_step);
 	return UNITY_END();
 }
