@@ -31,7 +31,9 @@ static void test_each_kind_alone_is_a_loss(void)
 
 static void test_a_record_says_when_and_where_the_first_was_and_how_many(void)
 {
+	los.los2[1].before_power_up = true;
 	lw_los_note(&los.los2[1], 5000999, 77);
+	TEST_ASSERT_FALSE(los.los2[1].before_power_up);
 	lw_los_note(&los.los2[1], 6000000, 99);
 	TEST_ASSERT_EQUAL_UINT16(2, los.los2[1].count);
 	TEST_ASSERT_EQUAL_INT32(77, los.los2[1].position_q16);

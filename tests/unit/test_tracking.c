@@ -655,6 +655,25 @@ static void test_a_trim_after_a_stop_at_speed_is_asked_of_nobody(void)
 	TEST_ASSERT_EQUAL_UINT8(0, rig.controller->motion.requests);
 }
 
+static void test_a_hand_over_in_a_reversal_is_a_visit_of_it_alone(void)
+{
+	static const int32_t places[] = {8100, 0, -8100};
+
+	for (size_t i = 0; i < sizeof(places) / sizeof(places[0]); i++) {
+		rig_prepare(0);
+		rig_track();
+		rig_follow_to(places[i], places[i] < 0 ? -1 : 1, SPEED);
+		rig_rest();
+		lw_controller_stop(rig.controller);
+		rig.controller->los.visiting[LW_PLUS] = places[i] <= 0;
+		rig.controller->los.visiting[LW_MINUS] = places[i] >= 0;
+		lw_controller_set_mode(rig.controller, LW_MODE_TRACK);
+		rig_run_to(LW_STATE_TRACKING);
+		TEST_ASSERT_EQUAL(places[i] > 0, rig.controller->los.visiting[LW_PLUS]);
+		TEST_ASSERT_EQUAL(places[i] < 0, rig.controller->los.visiting[LW_MINUS]);
+	}
+}
+
 int main(void)
 {
 	UNITY_BEGIN();
@@ -689,5 +708,6 @@ int main(void)
 	RUN_TEST(test_the_pattern_is_counted_from_each_hand_over);
 	RUN_TEST(test_centring_a_carriage_that_is_in_the_middle);
 	RUN_TEST(test_a_trim_after_a_stop_at_speed_is_asked_of_nobody);
+	RUN_TEST(test_a_hand_over_in_a_reversal_is_a_visit_of_it_alone);
 	return UNITY_END();
 }
