@@ -194,6 +194,14 @@ static void test_reason_slope_too_small(void)
 	params.pitch_um = 15258;
 	TEST_ASSERT_EQUAL_INT(-EINVAL, lw_params_derive(&params, &derived, &why));
 	TEST_ASSERT_EQUAL_UINT16(LW_REASON_SLOPE_TOO_SMALL, why.reason);
+
+	/* At 10 um it is a half less the least that these registers can make. */
+	params.pitch_um = 10;
+	params.encoder_pulses_per_rev = 1579;
+	params.encoder_edges_per_pulse = 1;
+	params.encoder_ratio_numerator = 37;
+	params.screw_lead_um = 4487;
+	assert_refused(LW_REASON_SLOPE_TOO_SMALL, LW_ADDRESS_PITCH_UM, 10, 11);
 }
 
 static void test_reason_slope_unreachable(void)
