@@ -18,11 +18,16 @@ from test_life import index, turn_drum
 
 
 @pytest.mark.parametrize(
-    ("channel", "kind"), [("a", EncoderFault.A_STILL), ("b", EncoderFault.B_STILL)]
+    ("channel", "kinds"),
+    [
+        ("a", (EncoderFault.A_STILL, EncoderFault.A_FLICKERS)),
+        ("b", (EncoderFault.B_STILL, EncoderFault.B_FLICKERS)),
+    ],
 )
 def test_a_dead_channel_is_told_and_cleared_by_an_indexing(
-    slave: Slave, channel: str, kind: EncoderFault
+    slave: Slave, channel: str, kinds: tuple[EncoderFault, ...]
 ) -> None:
+    """One that dies a moment before a block of the watch ends is told as a loose one."""
     slave.write("bench_index_pulses", 0)
     index(slave)
     turn_drum(slave, 200_000)
@@ -34,7 +39,7 @@ def test_a_dead_channel_is_told_and_cleared_by_an_indexing(
     assert slave.read("command_reason") == Reason.ENCODER_DOUBTFUL
     slave.wait(lambda: slave.flag(Flag.ENCODER_FAULT))
     assert slave.flag(Flag.LOS)
-    assert slave.read("encoder_fault_kind") == kind
+    assert slave.read("encoder_fault_kind") in kinds
     assert slave.read("state") == State.TRACKING
 
     turn_drum(slave, 0)
