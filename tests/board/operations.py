@@ -163,6 +163,16 @@ def corrected() -> Board:
 
 
 @kept
+def half_corrected() -> Board:
+    """As corrected(), by half: the next trigger changes what waits."""
+    board = corrected()
+    path = "controller.motion.request_correction_usteps"
+    waiting = symbol("app_device") + member("lw_device", path).offset
+    board.poke(waiting, board.peek(waiting) // 2)
+    return board
+
+
+@kept
 def held() -> Board:
     """Ready, and held there."""
     board = following()
@@ -299,6 +309,9 @@ OPERATIONS: dict[str, Operation] = {
     ),
     "limit switch while a correction waits": Operation(
         corrected, opens_and_closes(PLUS), PIN_S, side=MINUS
+    ),
+    "limit switch that changes a waiting correction": Operation(
+        half_corrected, opens_and_closes(PLUS), PIN_S, side=MINUS
     ),
     "stop": Operation(following, sends(frame(command=Command.STOP))),
     "stop while a correction waits": Operation(corrected, sends(frame(command=Command.STOP))),

@@ -95,7 +95,7 @@ BROKEN = {
         "	motion->requests &= (uint8_t)~LW_MOTION_REQUEST_CORRECTION;\n"
         "	motion->request_correction_usteps -= error;",
         "	motion->request_correction_usteps -= error;",
-        "limit switch while a correction waits",
+        "limit switch that changes a waiting correction",
     ),
     "a correction is looked at before its edges are kept out": Broken(
         "lib/lw_core/src/control/tracking.c",
