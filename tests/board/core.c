@@ -188,8 +188,11 @@ static void on_block(uc_engine *uc, uint64_t address, uint32_t size, void *user_
 		block = measure(board, (uint32_t)address, size);
 	}
 	if (core->stop_at < core->instructions + block.instructions && core->stop_address == 0) {
-		core->stop_address = address_of(board, (uint32_t)address, block.instructions,
-						core->stop_at - core->instructions);
+		/* Passed already where an IT covered the end of the block before. */
+		const uint64_t left =
+			core->stop_at > core->instructions ? core->stop_at - core->instructions : 0;
+
+		core->stop_address = address_of(board, (uint32_t)address, block.instructions, left);
 		if (core->stop_address != 0) {
 			(void)uc_ctl_remove_cache(uc, address, address + size);
 			core->block_flags = 0;

@@ -26,6 +26,7 @@ SETTLE_S = 0.003  # what the interrupt has begun: threads, ticks, pulses
 EDGE_S, TIMER_EDGE_S = 0.0001, 0.0003
 END_S = 0.0015
 MORE_EDGES = 3
+STEP_MAX = 5  # an IT and what it covers, where no interrupt is injected
 
 TIM4 = 0x40000800  # the edge timer: control, events, count, period
 CR1, EGR, CNT, ARR = TIM4, TIM4 + 0x14, TIM4 + 0x24, TIM4 + 0x2C
@@ -258,6 +259,7 @@ class Injector:
             done = board.run_instructions(1, (end_ns - board.now_ns) / 1e9)
             if done == 0:
                 break
+            assert done <= STEP_MAX, "not every instruction"
             instruction += done
         while not board.asleep and board.now_ns < settled_ns:
             instruction += board.run_instructions(1, SETTLE_S)
