@@ -14,16 +14,19 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from datetime import datetime
 from pathlib import Path
 
 import pytest
 from levelwind.errors import ToolError
 from levelwind.line.event_log import LogRecord
 from levelwind.line.live import LIVE_POINTS, MORE_POINTS, Travel
+from levelwind.line.port import Line
 from levelwind.map_table import BenchCommand, Event, Flag
 from levelwind.serve import lay
 from levelwind.serve.lay import Growth
-from levelwind.serve.recorder import Launches, Recorder
+from levelwind.serve.owner import Outcome, PortOwner
+from levelwind.serve.recorder import Launches, Recorder, event_times_s
 from levelwind.serve.view import Seen
 from prometheus_client.parser import text_string_to_metric_families
 from served import TOOL, Served, wait
@@ -173,6 +176,180 @@ def test_what_is_no_record_is_told(tmp_path: Path) -> None:
         Recorder(tmp_path / "no" / "folder.sqlite", None, Growth())
 
 
+def made(record: Path, *changes: str) -> Path:
+    """A record with a launch, then changed."""
+    winch = Winch(record)
+    winch.look(resting=True)
+    winch.look(resting=False)
+    winch.look(resting=True)
+    winch.close()
+    with closing(sqlite3.connect(record)) as base:
+        for change in changes:
+            base.execute(change)
+        base.commit()
+    return record
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (["PRAGMA user_version = 2"], "newer version"),
+        (["ALTER TABLE samples RENAME COLUMN rope_mm TO rope_m"], "another program"),
+        (["ALTER TABLE launches DROP COLUMN lay"], "another program"),
+        (["DROP TABLE events"], "another program"),
+        (["PRAGMA user_version = 0"], "another program"),
+    ],
+)
+def test_a_database_that_is_no_record_is_told_and_left_alone(
+    record: Path, changes: list[str], said: str
+) -> None:
+    before = made(record, *changes).read_bytes()
+    with pytest.raises(ToolError, match=said):
+        Launches(record)
+    with pytest.raises(ToolError, match=said):
+        Recorder(record, None, Growth())
+    assert record.read_bytes() == before
+
+
+def test_another_programs_database_is_left_alone(record: Path) -> None:
+    with closing(sqlite3.connect(record)) as base:
+        base.execute("CREATE TABLE bookmarks (url TEXT)")
+    before = record.read_bytes()
+    with pytest.raises(ToolError, match="another program"):
+        Recorder(record, None, Growth())
+    assert record.read_bytes() == before
+
+
+def test_a_damaged_launch_hides_no_other(record: Path) -> None:
+    made(record, "INSERT INTO launches SELECT 7, began, ended, '', '', '', '{', '' FROM launches")
+    assert [one["id"] for one in Launches(record).list()] == [7, 1]
+    assert "Damaged." in tool("launches", "list", "--record", str(record))
+    with pytest.raises(ToolError, match="launch 7 is damaged"):
+        Launches(record).one(7)
+    assert Launches(record).one(1)["samples"]
+
+
+def test_a_number_that_is_none(record: Path) -> None:
+    launches = Launches(made(record))
+    for number in (0, 2, -1, 1 << 63, 10**30):
+        with pytest.raises(ToolError, match=f"There is no launch {number}"):
+            launches.one(number)
+
+
+def test_an_empty_record(record: Path) -> None:
+    record.touch()
+    with pytest.raises(ToolError, match="no launch has been recorded"):
+        Launches(record)
+    Winch(record).close()
+    assert Launches(record).list() == []
+
+
+def test_the_file_alone_has_every_launch_that_has_ended(record: Path, tmp_path: Path) -> None:
+    """Somebody copies it while the server runs, and leaves the log of SQLite behind."""
+    winch = Winch(record)
+    winch.look(resting=True)
+    winch.look(resting=False)
+    winch.look(resting=True)
+    winch.read_log()
+    winch.look(resting=True)
+    winch.recorder._write()
+    copy = tmp_path / "copy.sqlite"
+    copy.write_bytes(record.read_bytes())
+    assert Launches(copy).one(1)["result"]["launch_permit"] == "never given"
+    assert len(Launches(copy).one(1)["samples"]) == len(Launches(record).one(1)["samples"]) > 20
+
+
+def test_a_record_where_nobody_can_write(
+    record: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a stick that is locked: SQLite cannot make the file by which readers agree."""
+    made(record)
+    connect = sqlite3.connect
+
+    def locked(at: object, **options: object) -> sqlite3.Connection:
+        if "mode=ro" in str(at) and "immutable" not in str(at):
+            at = f"{(tmp_path / 'nothing').as_uri()}?mode=ro"
+        return connect(at, **options)
+
+    monkeypatch.setattr(sqlite3, "connect", locked)
+    assert Launches(record).one(1)["samples"]
+    record.with_name(f"{record.name}-wal").touch()  # what stands in it would be missing
+    with pytest.raises(ToolError, match="unable to open"):
+        Launches(record)
+
+
+def test_the_end_of_the_server_ends_a_launch(record: Path) -> None:
+    winch = Winch(record)
+    winch.look(resting=True)
+    winch.look(resting=False)
+    assert winch.close() == ""
+    launch = Launches(record).one(1)
+    assert launch["ended"]
+    assert launch["result"]["cut"] == "The server was ended."
+    assert launch["result"]["rope_m"] == 0
+
+
+def test_a_kill_does_not_make_a_launch_end_as_it_began(record: Path) -> None:
+    winch = Winch(record)
+    winch.look(resting=True)
+    winch.look(resting=False, seconds=3)
+    winch.recorder._write()
+    Recorder(record, winch, Growth())  # as it begins after a kill
+    launch = Launches(record).one(1)
+    began, ended = (datetime.fromisoformat(launch[name]) for name in ("began", "ended"))
+    assert (ended - began).total_seconds() == pytest.approx(launch["samples"][-1]["time_s"], 0.01)
+
+
+def test_what_is_lost_at_the_end_is_told(record: Path) -> None:
+    """Another program holds the record: nothing can be written."""
+    winch = Winch(record)
+    winch.recorder._base.execute("PRAGMA busy_timeout = 10")
+    winch.look(resting=True)
+    winch.look(resting=False)
+    with closing(sqlite3.connect(record, isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        said = winch.close()
+    assert "database is locked. Not on the disk: launches of 20" in said
+
+
+def test_the_list_tells_the_speed_of_pulling_out_and_nothing_where_nothing_is_known(
+    record: Path,
+) -> None:
+    result = {"launch_permit": "kept", "rope_m": -500, "max_rope_speed_m_per_s": 0}
+    result |= {"min_rope_speed_m_per_s": -12.3}
+    made(record, f"UPDATE launches SET result = '{json.dumps(result)}'")
+    assert re.search(r" 12\.3 +-500\.0 ", tool("launches", "list", "--record", str(record)))
+    made(record, "UPDATE launches SET result = NULL WHERE id = 2")
+    said = tool("launches", "list", "--record", str(record)).splitlines()[1]
+    assert re.search(r" \d\.\d +being recorded, or cut by a kill$", said), said
+
+
+def test_events_are_told_by_the_clock_of_the_samples(record: Path) -> None:
+    """The controller's, which began anew meanwhile, is that of nothing else on the page."""
+    winch = Winch(record)
+    winch.look(resting=True)
+    winch.look(resting=False, seconds=1)
+    winch.happens()
+    winch.look(resting=False, seconds=1)
+    winch.read_log()
+    winch.look(resting=True)
+    winch.close()
+    launch = Launches(record).one(1)
+    assert list(event_times_s(launch)) == [pytest.approx(1.45, abs=0.06)]
+    assert re.search(r"^ *1\.[45]  ", tool("launches", "show", "1", "--record", str(record)), re.M)
+
+
+def test_page_requests_are_part_of_all(tmp_path: Path) -> None:
+    """Also while the port is away: a counter never tells more than the whole."""
+    owner = PortOwner(Line(str(tmp_path / "nothing")))
+    owner.start()
+    for _ in range(3):
+        assert owner.exchange(1, b"\x07").outcome is Outcome.NO_PATH
+    owner.close()
+    assert (owner.counts.requests, owner.counts.page_requests) == (0, 0)
+    assert owner.counts.no_path == 3
+
+
 def test_metrics(start: Start) -> None:
     served = start("--timeout", "0.2")
     served.index()
@@ -190,7 +367,7 @@ def test_metrics(start: Start) -> None:
     now = values()
     assert now["levelwind_up"] == 1
     assert now["levelwind_flaglos"] == 0
-    assert now["levelwind_line_requests_total"] > now["levelwind_line_page_requests_total"] - 2 > 0
+    assert now["levelwind_line_requests_total"] > now["levelwind_line_page_requests_total"] > 0
     assert 0 < now["levelwind_line_latency_seconds0.5"] < 0.1
     with served.device() as device:
         assert now["levelwind_position_um"] == device.value("position_um")
@@ -235,6 +412,12 @@ class Winch:
 
     def read_log(self) -> None:
         self.log_s = self.time_s
+
+    def close(self) -> str:
+        """As the server ends."""
+        self.recorder._thread = threading.Thread()
+        self.recorder._thread.start()
+        return self.recorder.close()
 
 
 def events(record: Path, number: int) -> list[int]:

@@ -5,7 +5,7 @@ import os
 import tempfile
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -136,7 +136,7 @@ RECORD_DEFAULT = Path("launches.sqlite")
 def _result_words(result: dict[str, object]) -> str:
     """A launch's result in a line."""
     if "launch_permit" not in result:
-        return str(result.get("cut", "being recorded"))
+        return str(result.get("cut", "being recorded, or cut by a kill"))
     words = [f"permit {result['launch_permit']}"]
     for name in ("los", "faults"):
         found = result.get(name)
@@ -144,6 +144,14 @@ def _result_words(result: dict[str, object]) -> str:
     if "cut" in result:
         words.append(str(result["cut"]).splitlines()[0])
     return "; ".join(words)
+
+
+def _numbers(result: dict[str, Any]) -> tuple[str, str]:
+    """The greatest speed, of hauling in or pulling out, and the rope; of a cut launch nothing."""
+    if "rope_m" not in result:
+        return "", ""
+    speeds = result["max_rope_speed_m_per_s"], -result["min_rope_speed_m_per_s"]
+    return f"{max(speeds):.1f}", f"{result['rope_m']:+.1f}"
 
 
 @launches.command("list")
@@ -164,8 +172,7 @@ def list_(
             str(one["id"]),
             one["began"].replace("T", " ")[:19],
             f"{one['seconds'] or 0:.1f}",
-            f"{one['result'].get('max_rope_speed_m_per_s', 0):.1f}",
-            f"{one['result'].get('rope_m', 0):+.1f}",
+            *_numbers(one["result"]),
             _result_words(one["result"]),
         )
         for one in found
@@ -181,7 +188,7 @@ def show(
     json_output: Json = False,
 ) -> None:
     """Show one launch: result, events, parameters; --plot draws it."""
-    from levelwind.serve.recorder import Launches  # noqa: PLC0415
+    from levelwind.serve.recorder import Launches, event_times_s  # noqa: PLC0415
 
     launch = Launches(record).one(number)
     if plot is not None:
@@ -198,8 +205,8 @@ def show(
     console.print(f"firmware {launch['firmware']}, parameters {launch['parameters_sha256'][:16]}")
     console.print(f"{len(launch['samples'])} samples")
     rows = [
-        (f"{e['time_ms'] / 1000:.1f}", e["event"], e["detail"], e["state"])
-        for e in launch["events"]
+        (f"{seconds:.1f}", e["event"], e["detail"], e["state"])
+        for e, seconds in zip(launch["events"], event_times_s(launch), strict=True)
     ]
     if rows:
         print_table(("s>", "event", "detail", "state"), rows)

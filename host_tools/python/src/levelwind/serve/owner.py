@@ -51,6 +51,7 @@ class _Job:
     unit: int
     pdu: bytes
     done: Callable[[Answer], None]
+    is_page: bool
     came_s: float = field(default_factory=time.monotonic)
 
 
@@ -105,7 +106,7 @@ class PortOwner:
         self, client: Hashable | None, unit: int, pdu: bytes, done: Callable[[Answer], None]
     ) -> None:
         """Queue a request; None: the page's. `done` is called once, from the owner's thread."""
-        job = _Job(unit, pdu, done)
+        job = _Job(unit, pdu, done, is_page=client is None)
         with self._wake:
             queue = self._page if client is None else self._clients.setdefault(client, deque())
             queue.append(job)
@@ -131,7 +132,6 @@ class PortOwner:
                 may = self._turns >= PAGE_WAITS_TURNS or waits_s > PAGE_PATIENCE_S
                 if self._page and (may or not self._clients):
                     self._turns = 0
-                    self.counts.page_requests += 1
                     return self._page.popleft()
                 if self._clients:
                     client = next(iter(self._clients))
@@ -174,6 +174,7 @@ class PortOwner:
             return Answer(Outcome.NO_PATH, problem=self.problem)
         self.problem = ""
         self.counts.requests += 1
+        self.counts.page_requests += job.is_page
         if pdu:
             self._known.add(job.unit)
             self.counts.line_s.append(time.monotonic() - began)

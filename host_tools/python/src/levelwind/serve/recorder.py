@@ -13,7 +13,7 @@ import sqlite3
 import threading
 from collections import deque
 from collections.abc import Iterator, Mapping
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from pathlib import Path
@@ -35,6 +35,7 @@ WAITING_MAX = 40_000
 BEFORE_S = 1.0
 """So much of the rest before a launch belongs to it."""
 KEEP = 1000
+NUMBER_MAX = (1 << 63) - 1
 CLOCK_MS = 1 << 32
 """The controller's uptime begins anew then."""
 COLUMNS = (
@@ -62,6 +63,7 @@ CREATE TABLE IF NOT EXISTS events (
 );
 """
 VERSION = 1
+SQL_TIME = "%Y-%m-%dT%H:%M:%f+00:00"
 INSERT_SAMPLE = f"INSERT INTO samples VALUES ({', '.join('?' * (3 + len(COLUMNS)))})"
 
 
@@ -94,6 +96,28 @@ def fingerprint(parameters: Mapping[str, int]) -> str:
     return hashlib.sha256(json.dumps(dict(parameters), sort_keys=True).encode()).hexdigest()
 
 
+def _tables(base: sqlite3.Connection) -> dict[str, list[str]]:
+    """Their columns. An error of SQLite where it is no database, or in use."""
+    asked = "SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c"
+    found: dict[str, list[str]] = {}
+    for table, column in base.execute(f"{asked} WHERE m.type = 'table' ORDER BY c.cid"):
+        found.setdefault(table, []).append(column)
+    return found
+
+
+def _misfit(base: sqlite3.Connection) -> str:
+    """Why this database is none of ours; it is then not touched. Empty where it is one."""
+    with closing(sqlite3.connect(":memory:")) as ours:
+        ours.executescript(SCHEMA)
+        wanted, found = _tables(ours), _tables(base)
+    version = base.execute("PRAGMA user_version").fetchone()[0]
+    if "launches" in found and "samples" in found and version > VERSION:
+        return "written by a newer version of the tool"
+    if version != VERSION or any(found.get(name) != wanted[name] for name in wanted):
+        return "a database of another program, or no record of this version; give another file"
+    return ""
+
+
 class Recorder:
     """Listens to a watcher; a thread of its own writes."""
 
@@ -113,16 +137,16 @@ class Recorder:
         self._ended = threading.Event()
         try:
             self._base = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
-            version = self._base.execute("PRAGMA user_version").fetchone()[0]
-            if version not in (0, VERSION):
-                raise ToolError(f"--record {path}: written by a newer version of the tool.")
-            if version == 0:
+            is_new = _tables(self._base) == {}
+            if not is_new and (why := _misfit(self._base)):
+                raise ToolError(f"--record {path}: {why}.")
+            if is_new:
                 self._base.execute("PRAGMA auto_vacuum = INCREMENTAL")
             self._base.execute("PRAGMA journal_mode = WAL")
             self._base.execute("PRAGMA synchronous = FULL")
             self._base.execute("PRAGMA foreign_keys = ON")
-            self._base.executescript(SCHEMA)
-            self._base.execute(f"PRAGMA user_version = {VERSION}")
+            if is_new:
+                self._base.executescript(f"BEGIN; {SCHEMA} PRAGMA user_version = {VERSION}; COMMIT")
             self._close_cut_launches()
         except sqlite3.Error as error:
             raise ToolError(f"--record {path}: {error}.") from error
@@ -134,19 +158,30 @@ class Recorder:
         self._watcher.ticks.append(self._look_whether_gone)
         self._thread.start()
 
-    def close(self) -> None:
-        """Write what is there, and end."""
+    def close(self) -> str:
+        """Write what is there, and end; what was lost, in words.
+
+        A launch that is under way ends here.
+        """
+        if self._launch is not None and self._watcher.seen is not None:
+            self._cut(self._launch, self._watcher.seen, "The server was ended.")
         self._finish(None)
         self._ended.set()
         self._thread.join(5.0)
         self._write()
         self._base.close()
+        lost = {launch.began for _, launch, _ in self._waiting}
+        return (
+            f"{self.problem}. Not on the disk: launches of {', '.join(sorted(lost))}"
+            if lost
+            else ""
+        )
 
     def state(self) -> dict[str, object]:
         """For the page."""
         return {
             "recording": self._launch is not None,
-            "problem": self.problem,
+            "problem": self.problem and f"{self.problem}. What comes is kept in memory",
             "waiting": len(self._waiting),
             "lost": self.lost,
         }
@@ -251,10 +286,13 @@ class Recorder:
         if not self._watcher.problem or seen is None:
             return
         if launch is not None:
-            self._launch = None
-            self._put("rest", launch, {**self._result(launch, seen), "cut": self._watcher.problem})
-            self._ending.append((launch, seen.stamp_s, _now()))
+            self._cut(launch, seen, self._watcher.problem)
         self._finish(None)
+
+    def _cut(self, launch: _Launch, seen: Seen, why: str) -> None:
+        self._launch = None
+        self._put("rest", launch, {**self._result(launch, seen), "cut": why})
+        self._ending.append((launch, seen.stamp_s, _now()))
 
     # ---- writing -------------------------------------------------------------------------------
 
@@ -282,7 +320,7 @@ class Recorder:
                 self._write_one(kind, launch, what)
             self._base.execute("COMMIT")
         except sqlite3.Error as error:
-            self.problem = f"{self.path}: {error}. What comes is kept in memory"
+            self.problem = f"{self.path}: {error}"
             for _, launch, _ in waiting:
                 launch.id = ids[id(launch)]
             if self._base.in_transaction:
@@ -292,6 +330,10 @@ class Recorder:
         with self._lock:
             for _ in waiting:
                 self._waiting.popleft()
+        if any(kind == "end" for kind, _, _ in waiting):
+            # So that the file alone has every launch that has ended, for whoever copies it.
+            with suppress(sqlite3.Error):
+                self._base.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchall()
 
     def _write_one(self, kind: str, launch: _Launch, what: Any) -> None:
         run = self._base.execute
@@ -319,9 +361,11 @@ class Recorder:
             run("PRAGMA incremental_vacuum(1000)").fetchall()
 
     def _close_cut_launches(self) -> None:
-        """What a kill or a power cut has left open."""
+        """What a kill or a power cut has left open: it lasted as long as it was recorded."""
+        lasted = "(SELECT coalesce(max(time_s), 0) FROM samples WHERE launch = id)"
         self._base.execute(
-            "UPDATE launches SET ended = began, result = coalesce(result, ?) WHERE ended IS NULL",
+            f"UPDATE launches SET ended = strftime('{SQL_TIME}', began, {lasted} || ' seconds'),"
+            " result = coalesce(result, ?) WHERE ended IS NULL",
             (json.dumps({"cut": "The recording was cut: the server has ended."}),),
         )
 
@@ -333,24 +377,58 @@ def _event(record: LogRecord) -> tuple[object, ...]:
     )
 
 
+def event_times_s(launch: Mapping[str, Any]) -> Iterator[float]:
+    """When its events were, by the clock of its samples: that of a plot begins at 0, too."""
+    samples = launch["samples"]
+    began_ms = samples[0]["uptime_ms"] - 1000 * samples[0]["time_s"] if samples else 0
+    for event in launch["events"]:
+        since_ms = (event["time_ms"] - began_ms + CLOCK_MS / 2) % CLOCK_MS - CLOCK_MS / 2
+        yield since_ms / 1000
+
+
 class Launches:
     """Reads what was recorded, also while it is being recorded."""
 
     def __init__(self, path: Path) -> None:
-        """ToolError if there is no such file."""
+        """ToolError if there is no such file, or it is no record."""
         self.path = path
         if not path.is_file():
             raise ToolError(f"{path}: there is no such file. `levelwind serve --record` writes it.")
+        self._options = "mode=ro"
+        try:
+            why = self._misfit()
+        except sqlite3.OperationalError as error:
+            wal = path.with_name(path.name + "-wal")
+            if not str(error).startswith("unable to open") or wal.exists():
+                raise ToolError(f"{path}: {error}.") from error
+            # A disk that nobody can write to has no room for what readers agree by; nor a writer.
+            self._options = "mode=ro&immutable=1"
+            why = self._misfit()
+        except sqlite3.Error as error:
+            raise ToolError(f"{path}: {error}.") from error
+        if why:
+            raise ToolError(f"{path}: {why}.")
+
+    def _open(self) -> sqlite3.Connection:
+        return sqlite3.connect(f"{self.path.resolve().as_uri()}?{self._options}", uri=True)
+
+    def _misfit(self) -> str:
+        with closing(self._open()) as base:
+            return _misfit(base) if _tables(base) else "no launch has been recorded in it"
 
     def _rows(self, question: str, *values: object) -> Iterator[dict[str, Any]]:
         try:
-            with closing(
-                sqlite3.connect(f"{self.path.resolve().as_uri()}?mode=ro", uri=True)
-            ) as base:
+            with closing(self._open()) as base:
                 base.row_factory = sqlite3.Row
                 yield from map(dict, base.execute(question, values))
-        except (sqlite3.Error, OverflowError) as error:
+        except sqlite3.Error as error:
             raise ToolError(f"{self.path}: {error}.") from error
+
+    def _read(self, number: int, text: str | None) -> Any:
+        try:
+            return json.loads(text or "null")
+        except (ValueError, TypeError):
+            raise ToolError(f"{self.path}: launch {number} is damaged.") from None
 
     def list(self, count: int | None = None) -> list[dict[str, Any]]:
         """The newest first, without their samples."""
@@ -361,15 +439,23 @@ class Launches:
             " FROM launches ORDER BY id DESC LIMIT ?",
             -1 if count is None else count,
         )
-        return [{**row, "result": json.loads(row["result"] or "{}")} for row in found]
+        return [{**row, "result": self._result(row)} for row in found]
+
+    def _result(self, row: Mapping[str, Any]) -> dict[str, Any]:
+        """One that is damaged must not hide the others."""
+        try:
+            return self._read(row["id"], row["result"]) or {}
+        except ToolError:
+            return {"cut": "Damaged."}
 
     def one(self, number: int) -> dict[str, Any]:
         """A launch with its samples and events; ToolError if there is none."""
-        found = next(self._rows("SELECT * FROM launches WHERE id = ?", number), None)
+        rows = self._rows("SELECT * FROM launches WHERE id = ?", min(number, NUMBER_MAX))
+        found = next(rows, None)
         if found is None:
             raise ToolError(f"There is no launch {number}. `levelwind launches list` shows them.")
         for name in ("result", "parameters", "lay"):
-            found[name] = json.loads(found[name] or "null")
+            found[name] = self._read(number, found[name])
         samples = self._rows("SELECT * FROM samples WHERE launch = ? ORDER BY time_s", number)
         found["samples"] = [
             {**row, "state": enum_label(State, row["state"])} | {"launch": number}

@@ -99,6 +99,12 @@ def warnings(setting: Setting) -> list[str]:
     return said
 
 
+def _end(recorder: Recorder, warn: Callable[[str], None]) -> None:
+    lost = recorder.close()
+    if lost:
+        warn(f"--record {lost}.")
+
+
 def run(setting: Setting, ready: Callable[[str], None], warn: Callable[[str], None]) -> None:
     """Serve until a signal; ToolError says why it cannot begin. `ready` is told the page's URL."""
     host, port = address("--listen", setting.listen)
@@ -120,7 +126,7 @@ def run(setting: Setting, ready: Callable[[str], None], warn: Callable[[str], No
         watcher.listeners.append(served.see)
         if setting.record is not None:
             served.recorder = Recorder(setting.record, watcher, served.growth, setting.keep)
-            stack.callback(served.recorder.close)
+            stack.callback(_end, served.recorder, warn)
             served.recorder.start()
         if setting.commission is not None:
             served.commissioning = Commissioning(owner, setting.commission)
