@@ -2,8 +2,12 @@
 """The wheel: the whole tool with its compiled core, away from the source tree."""
 
 import os
+import re
+import socket
 import subprocess
 import sys
+import time
+import urllib.request
 import zipfile
 from pathlib import Path
 
@@ -58,13 +62,42 @@ def test_it_runs_without_the_source_tree(wheel: Path, tmp_path: Path) -> None:
         python, "-c", "import levelwind; print(levelwind.__file__)", cwd=tmp_path, env=clean
     )
     assert str(tmp_path) in where.stdout
+    serves(python.parent / "levelwind", tmp_path, clean)
+    project = (ROOT / "host_tools" / "python" / "pyproject.toml").read_text()
+    (needed,) = re.findall(r"^serve = \[\n(.*?)^\]", project, re.DOTALL | re.MULTILINE)
+    oldest = [f"{name}=={version}" for name, version in re.findall(r'"(.+)>=(.+)"', needed)]
+    assert "uvicorn" in str(oldest)
+    run(python, "-m", "pip", "install", "--quiet", *oldest)
+    serves(python.parent / "levelwind", tmp_path, clean, pings=True)
+
+
+def hangs_up_on_who_does_not_answer_pings(port: int) -> None:
+    """A page whose cable is pulled must not keep its place."""
+    with socket.create_connection(("127.0.0.1", port), 5) as page:
+        head = f"GET /live HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nConnection: Upgrade\r\n"
+        head += "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: "
+        page.sendall(f"{head}{'A' * 22}==\r\n\r\n".encode())
+        assert page.recv(12) == b"HTTP/1.1 101"
+        end = time.monotonic() + 20
+        while page.recv(4096):
+            assert time.monotonic() < end, "it stays"
+
+
+def serves(tool: Path, folder: Path, environment: dict[str, str], pings: bool = False) -> None:
+    """The page and the numbers."""
     server = subprocess.Popen(
-        [python.parent / "levelwind", "serve", "--simulator", "--listen", "127.0.0.1:0"],
-        stdout=subprocess.PIPE, text=True, cwd=tmp_path, env=clean,
+        [tool, "serve", "--simulator", "--listen", "127.0.0.1:0"],
+        stdout=subprocess.PIPE, text=True, cwd=folder, env=environment,
     )  # fmt: skip
     try:
         assert server.stdout is not None
-        assert server.stdout.readline().startswith("ready http://127.0.0.1:")
+        said = server.stdout.readline()
+        assert said.startswith("ready http://127.0.0.1:")
+        url = said.split()[1]
+        with urllib.request.urlopen(f"{url}metrics", timeout=10) as answer:
+            assert b"levelwind_up" in answer.read()
+        if pings:
+            hangs_up_on_who_does_not_answer_pings(int(url.rstrip("/").rpartition(":")[2]))
     finally:
         server.terminate()
         server.wait(20)
