@@ -18,6 +18,7 @@
 #include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define UNIT_AT   (LW_TCP_HEAD - 1u)
@@ -94,7 +95,8 @@ static bool split(const char *address, char *host, size_t size, const char **por
 	size_t length;
 
 	if (colon == NULL || colon == address || colon[1] == '\0' ||
-	    strspn(colon + 1, "0123456789") != strlen(colon + 1)) {
+	    strspn(colon + 1, "0123456789") != strlen(colon + 1) ||
+	    strtoul(colon + 1, NULL, 10) > UINT16_MAX) { /* getaddrinfo() takes it modulo 65536 */
 		return false;
 	}
 	*port = colon + 1;

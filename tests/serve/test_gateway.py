@@ -135,6 +135,16 @@ def test_libmodbus_writes_through_the_gateway(start: Start) -> None:
     master.close()
 
 
+def test_the_simulator_listens_where_it_is_told_or_says_why_not(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """A port beyond 65535 was taken modulo 65536."""
+    for bad in ("127.0.0.1:65536", "127.0.0.1:99999", "127.0.0.1:", ":1502", "127.0.0.1"):
+        with pytest.raises(ToolError):
+            simulator.Simulator(simulator.arguments(None, tcp=bad)).end()
+        assert f"{bad}: give ADDRESS:PORT" in capfd.readouterr().err
+
+
 def test_transactions_and_order(start: Start) -> None:
     raw = RawTcp(start().gate)
     for number in (0xFFFF, 0, 7, 7, 3):
