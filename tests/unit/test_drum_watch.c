@@ -410,7 +410,7 @@ static void test_missing_edges_are_looked_for_in_three_blocks(void)
 	block(400, 4);
 	block(400, 4);
 	block(400, 4);
-	block(384, 4);
+	block(386, 4);
 	TEST_ASSERT_EQUAL_INT(LW_ENCODER_FAULT_NONE, watch.fault);
 }
 

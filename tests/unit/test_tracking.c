@@ -106,7 +106,12 @@ static void test_a_step_back_as_the_switch_triggers_hides_it_not(void)
 			rig_follow_to(out * 7842, out, drum * SPEED);
 			rig_turn(-drum * 4);
 			TEST_ASSERT_EQUAL_INT(-out, lw_motion_direction(&rig.controller->motion));
+
+			const int32_t u = rig.controller->motion.law.u;
+
+			rig.controller->motion.law.u = u > 0 ? 1 : -1; /* however flat it is */
 			rig_set_switch(side, RIG_SWITCH_WORKS);
+			rig.controller->motion.law.u = u;
 			rig_turn(drum * 4);
 			rig_follow_to(out * 8010, out, drum * SPEED);
 			rig_ticks(20);
