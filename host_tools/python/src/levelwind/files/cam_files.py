@@ -3,6 +3,7 @@
 
 import io
 import re
+import tempfile
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -97,7 +98,14 @@ def _line(row: Row) -> str:
 def write(path: Path, rows: Iterable[Sequence[int]], comments: Sequence[str] = ()) -> None:
     """A file that read() reads; the suffix says whether it is XLSX, CSV or plain text."""
     if path.suffix.lower() in tables.XLSX:
-        whole_file.write(path, _sheet(rows))
+        try:
+            content = _sheet(rows)
+        except OSError as error:
+            where = tempfile.gettempdir()
+            raise ToolError(
+                f"{path} cannot be written: {error.strerror} in {where}, where it is prepared."
+            ) from error
+        whole_file.write(path, content)
         return
     separator = "," if path.suffix.lower() == ".csv" else "\t"
     lines = [f"# {' '.join(comment.split())}" for comment in comments]
@@ -106,9 +114,7 @@ def write(path: Path, rows: Iterable[Sequence[int]], comments: Sequence[str] = (
 
 
 def _sheet(rows: Iterable[Sequence[int]]) -> bytes:
-    from openpyxl import Workbook  # noqa: PLC0415
-
-    book = Workbook()
+    book = tables.openpyxl().Workbook()
     book.active.append(COLUMNS)
     for row in rows:
         book.active.append(list(row))

@@ -8,11 +8,13 @@ a thousand: that is refused, too.
 import codecs
 import csv
 import math
+import os
 import re
 import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NoReturn
 
 from levelwind.errors import ToolError
@@ -290,10 +292,19 @@ def _sheet(path: Path) -> Iterator[Row]:
             yield row
 
 
-def _cells(path: Path, *, results: bool) -> list[tuple[Any, ...]]:
-    from openpyxl import load_workbook  # noqa: PLC0415 - half a second that text does not need
+def openpyxl() -> ModuleType:
+    """The library for workbooks; half a second that text does not need.
 
-    book = load_workbook(path, read_only=True, data_only=results)
+    Without lxml, which it takes where it is there: a full disk is an OSError then, as elsewhere.
+    """
+    os.environ["OPENPYXL_LXML"] = "False"
+    import openpyxl as library  # noqa: PLC0415
+
+    return library
+
+
+def _cells(path: Path, *, results: bool) -> list[tuple[Any, ...]]:
+    book = openpyxl().load_workbook(path, read_only=True, data_only=results)
     sheets = [sheet for sheet in book.worksheets if sheet.sheet_state == "visible"]
     if not sheets:
         raise ToolError(f"{path} has no worksheet: {SAVE_AS}.")
