@@ -29,7 +29,7 @@ def write(path: Path, content: bytes | str, private: bool = False) -> None:
     in_place = path.is_symlink() or (path.exists() and not path.is_file())
     new = path if in_place else path.with_name(f"{path.name}.new")
     try:
-        with new.open("wb") if not private else open(new, "wb", opener=_private) as file:
+        with open(new, "wb", opener=_private if private else None) as file:
             file.write(data)
         new.replace(path)
     except OSError as error:
